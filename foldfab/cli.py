@@ -1,0 +1,267 @@
+"""argv becomes calls of the pipeline becomes an exit status; nothing else in foldfab prints or exits.
+
+0 fine   1 cannot be folded, or a check fails   2 bad input   70 a bug   130 interrupted   141 nobody listens
+"""
+
+from __future__ import annotations
+
+import argparse
+import io
+import os
+import sys
+import time
+import traceback
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from foldfab.recipe.model import Recipe
+
+USAGE, BUG, INTERRUPTED, UNHEARD = 2, 70, 130, 141
+
+_OPTIONS: tuple[tuple[str, str, str], ...] = (
+    ("--direction", "D", 'folding direction: an axis such as -z, a vector such as 0,0,-1, or "auto"'),
+    ("--posture", "P", "print it open or folded"),
+    ("--printer", "NAME", "a known printer such as prusa-mk4, or a build volume such as 200x200x180"),
+    ("--scale", "S", 'print size over true size: "fit", a number, or a ratio such as 1:5'),
+    ("--clearance", "MM", "gap that a hinge is printed with, 0.1 to 1"),
+    ("--thickness", "MM", "thickness of plates and panels, 1 to 20"),
+    ("--alpha", "A", "weight of inserted hinges (1) against shrinking (0)"),
+    ("--max-hinges", "N", "most hinges that may be inserted in one patch, 1 to 9"),
+    ("--shrink-steps", "N", "how many pieces a patch is cut into for shrinking, 1 to 20"),
+)
+_SWITCHES = ("slanting", "stay_in_box")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command and return its exit status."""
+    _show_any_letter(sys.stdout)
+    try:
+        status = _guarded(sys.argv[1:] if argv is None else argv)
+        sys.stdout.flush()
+        return status
+    except BrokenPipeError:
+        # What is still in the buffer would fail again when Python closes the stream.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return UNHEARD
+
+
+def _guarded(argv: Sequence[str]) -> int:
+    """The command's status, with every exception turned into one line on stderr."""
+    from foldfab.errors import FoldfabError
+
+    try:
+        arguments = _parser().parse_args(_joined(argv))
+        command: Callable[[argparse.Namespace], int] = arguments.command
+        return command(arguments)
+    except SystemExit as leave:
+        return leave.code if isinstance(leave.code, int) else 0
+    except FoldfabError as error:
+        return _complain(str(error), error.exit_status)
+    except KeyboardInterrupt:
+        return _complain("interrupted", INTERRUPTED)
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        where = f"{error.filename}: " if error.filename else ""
+        return _complain(f"{where}{error.strerror or error}; is there room, and may you write there?", USAGE)
+    except Exception as error:
+        return _bug(error)
+
+
+def _print(arguments: argparse.Namespace) -> int:
+    progress = _Progress(arguments.quiet)
+    recipe = _load(arguments, progress)
+    from foldfab import pipeline
+    from foldfab.report import summary
+
+    progress("looking for the cheapest fold")
+    solution = pipeline.foldabilize(recipe)
+    progress("building the solids")
+    assembly = pipeline.fabricate(solution, progress=progress)
+    fatal = [finding.text for finding in assembly.findings if finding.is_fatal]
+    if fatal:
+        return _complain("this would not work:\n  " + "\n  ".join(fatal), 1)
+    progress("writing")
+    folder = Path(arguments.output) / recipe.name
+    pipeline.write(assembly, folder)
+    progress.done()
+    if not arguments.quiet:
+        print(summary(assembly, folder))
+    return 0
+
+
+def _fold(arguments: argparse.Namespace) -> int:
+    progress = _Progress(arguments.quiet or arguments.json)
+    recipe = _load(arguments, progress)
+    from foldfab import pipeline, report
+    from foldfab.errors import FoldfabError
+
+    progress("looking for the cheapest fold")
+    start = time.perf_counter()
+    try:
+        solution = pipeline.foldabilize(recipe)
+    except FoldfabError as error:
+        if arguments.json and error.exit_status == 1:
+            _print_json(report.refused_facts(str(error)))
+            return 1
+        raise
+    milliseconds = 1000 * (time.perf_counter() - start)
+    progress.done()
+    if arguments.json:
+        _print_json(report.fold_facts(solution, milliseconds))
+    else:
+        print(report.fold_table(solution, milliseconds))
+    return 0
+
+
+def _check(arguments: argparse.Namespace) -> int:
+    from foldfab import pipeline
+
+    progress = _Progress(arguments.json)
+    progress("checking")
+    found = pipeline.check(Path(arguments.folder))
+    progress.done()
+    if arguments.json:
+        checks = [{"code": row.code, "ok": row.ok, "text": row.text} for row in found.rows]
+        _print_json({"status": "ok" if found.ok else "failed", "folder": arguments.folder, "checks": checks})
+    else:
+        for row in found.rows:
+            print(f"{'ok  ' if row.ok else 'FAIL'}  {row.code:<10}  {row.text}")
+    return 0 if found.ok else 1
+
+
+def _recipes(arguments: argparse.Namespace) -> int:
+    from foldfab import pipeline
+
+    shipped = [pipeline.load(str(path)) for path in pipeline.shipped()]
+    width = max((len(recipe.name) for recipe in shipped), default=0)
+    for recipe in shipped:
+        print(f"{recipe.name:<{width}}  {recipe.about}")
+    return 0
+
+
+def _load(arguments: argparse.Namespace, progress: _Progress) -> Recipe:
+    progress("reading")
+    from foldfab import pipeline
+
+    overrides: dict[str, Any] = {name: getattr(arguments, name) for name in (*_option_names(), *_SWITCHES)}
+    return pipeline.load(arguments.recipe, **{key: value for key, value in overrides.items() if value is not None})
+
+
+_CLEAR = "\r\033[K"
+"""Back to the start of the line, and wipe it."""
+
+
+class _Progress:
+    """One line on stderr that says what is being done; silent off a terminal."""
+
+    def __init__(self, is_quiet: bool) -> None:
+        self.is_shown = not is_quiet and sys.stderr.isatty()
+
+    def __call__(self, text: str) -> None:
+        if self.is_shown:
+            print(f"{_CLEAR}{text} …", end="", file=sys.stderr, flush=True)
+
+    def done(self) -> None:
+        """Clear the line."""
+        if self.is_shown:
+            print(_CLEAR, end="", file=sys.stderr, flush=True)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="foldfab", description="Furniture becomes a print that folds flat.", allow_abbrev=False
+    )
+    parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    making = _command(commands, "print", _print, "fold a recipe's furniture and write a folder that prints")
+    making.add_argument("-o", "--output", metavar="DIR", default="prints", help="where its folder goes (prints)")
+    folding = _command(commands, "fold", _fold, "only say what would be changed, in which order, at which cost")
+    folding.add_argument("--json", action="store_true", help="print the facts as JSON")
+    for command, quiet in ((making, "show no progress and no summary"), (folding, "show no progress")):
+        command.add_argument("recipe", metavar="RECIPE", help="a .json file, or the name of a shipped recipe")
+        command.add_argument("-q", "--quiet", action="store_true", help=quiet)
+        _add_options(command)
+    checking = _command(commands, "check", _check, "inspect a print folder from its files alone")
+    checking.add_argument("folder", metavar="FOLDER", help="a folder that `foldfab print` wrote")
+    checking.add_argument("--json", action="store_true", help="print the facts as JSON")
+    _command(commands, "recipes", _recipes, "list the recipes that foldfab ships")
+    return parser
+
+
+def _command(
+    commands: argparse._SubParsersAction[argparse.ArgumentParser],
+    name: str,
+    run: Callable[[argparse.Namespace], int],
+    text: str,
+) -> argparse.ArgumentParser:
+    parser = commands.add_parser(name, help=text, description=text, allow_abbrev=False)
+    parser.set_defaults(command=run)
+    return parser
+
+
+def _add_options(parser: argparse.ArgumentParser) -> None:
+    """Options that replace the recipe's own; their values are judged by the recipe room, all at once."""
+    group = parser.add_argument_group("options that replace the recipe's")
+    for option, metavar, text in _OPTIONS:
+        group.add_argument(option, metavar=metavar, help=text)
+    group.add_argument("--no-slanting", dest="slanting", action="store_false", default=None, help="fold in place only")
+    group.add_argument("--stay-in-box", action="store_true", default=None, help="stay within the bounding box")
+
+
+class _Version(argparse.Action):
+    """Looked up only when asked for: importlib.metadata is slow to import."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        from importlib.metadata import PackageNotFoundError, version
+
+        try:
+            print(f"foldfab {version('foldfab')}")
+        except PackageNotFoundError:
+            print("foldfab 0.0.0 (not installed)")
+        parser.exit()
+
+
+def _joined(argv: Sequence[str]) -> list[str]:
+    """Values that begin with a minus are tied to their option; argparse would take `-z` for an option of its own."""
+    valued = {option for option, _, _ in _OPTIONS}
+    arguments, left = list[str](), iter(argv)
+    for argument in left:
+        value = next(left, None) if argument in valued else None
+        arguments.append(argument if value is None else f"{argument}={value}")
+    return arguments
+
+
+def _option_names() -> tuple[str, ...]:
+    return tuple(option[2:].replace("-", "_") for option, _, _ in _OPTIONS)
+
+
+def _print_json(facts: dict[str, Any]) -> None:
+    import json
+
+    print(json.dumps(facts, indent=1, ensure_ascii=False, allow_nan=False))
+
+
+def _complain(text: str, status: int) -> int:
+    print(f"{_CLEAR if sys.stderr.isatty() else ''}foldfab: {text}", file=sys.stderr)
+    return status
+
+
+def _bug(error: Exception) -> int:
+    if os.environ.get("FOLDFAB_DEBUG") == "1":
+        traceback.print_exception(error, file=sys.stderr)
+    what = " ".join(f"{type(error).__name__}: {error}".split())[:200]
+    advice = "please report it with the recipe; FOLDFAB_DEBUG=1 shows the traceback"
+    return _complain(f"this is a bug in foldfab ({what}); {advice}", BUG)
+
+
+def _show_any_letter(stream: object) -> None:
+    """A terminal that cannot show × or α gets an escape instead of a crash."""
+    if isinstance(stream, io.TextIOWrapper):
+        stream.reconfigure(errors="backslashreplace")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

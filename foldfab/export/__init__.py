@@ -1,0 +1,1 @@
+"""An Assembly becomes files."""

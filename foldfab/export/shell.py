@@ -1,0 +1,78 @@
+"""A body's mesh as a file will hold it: on the grid that file formats can keep, still closed.
+
+STL, 3MF readers and GLB hold 32-bit floats. Left to them, the rounding would pinch short edges without anyone
+looking; so it is done here once, and the triangles that it flattens are taken out together.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from foldfab.export.frames import to_sheet
+from foldfab.fabrication.model import Assembly, Body
+from foldfab.geometry.arrays import Array, Bools, Indices
+
+GRID_DIGITS = 5
+"""Vertices stand on a grid of 0.01 µm, about what a 32-bit float resolves at 200 mm."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Shell:
+    """One closed mesh, ready to be written."""
+
+    name: str
+    kind: Literal["base", "panel"]
+    vertices: Array
+    """(n, 3) mm, every value a 32-bit float."""
+    faces: Indices
+    """(m, 3) counter-clockwise seen from outside."""
+    is_hinge: Bools
+    """(m,) whether the face belongs to a hinge that was added."""
+
+
+def sheet_shells(assembly: Assembly) -> tuple[Shell, ...]:
+    """All bodies, open posture, sheet frame."""
+    return tuple(snapped(body, to_sheet(assembly, body.vertices)) for body in assembly.bodies)
+
+
+def snapped(body: Body, points: Array) -> Shell:
+    """The body with its vertices at (n, 3) `points`, rounded to the grid; collapsed triangles are dropped."""
+    rounded = np.round(points, GRID_DIGITS).astype(np.float32).astype(np.float64) + 0.0
+    is_hinge = np.zeros(len(body.faces), dtype=bool)
+    is_hinge[body.hinge_faces] = True
+    vertices, faces, is_kept = _welded(rounded, body.faces)
+    if not is_closed(faces):
+        # Welding made two sheets of the body touch along an edge: indices keep them apart.
+        return Shell(body.name, body.kind, rounded, body.faces, is_hinge)
+    return Shell(body.name, body.kind, vertices, faces, is_hinge[is_kept])
+
+
+def is_closed(faces: Indices) -> bool:
+    """Whether each directed edge of (m, 3) faces occurs once, and once the other way round."""
+    if len(faces) == 0:
+        return False
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    base = int(faces.max()) + 1
+    forward, backward = edges @ [base, 1], edges @ [1, base]
+    unique = np.unique(forward)
+    return len(unique) == len(forward) and np.array_equal(unique, np.unique(backward))
+
+
+def bounds(shells: tuple[Shell, ...]) -> tuple[Array, Array]:
+    """(3,) least and (3,) greatest coordinates of all shells, mm."""
+    points = np.vstack([shell.vertices for shell in shells])
+    return points.min(axis=0), points.max(axis=0)
+
+
+def _welded(points: Array, faces: Indices) -> tuple[Array, Indices, Bools]:
+    _, first, index = np.unique(points, axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty_like(order)
+    rank[order] = np.arange(len(order))
+    renamed = rank[index.reshape(-1)][faces]
+    a, b, c = renamed.T
+    is_kept = (a != b) & (b != c) & (c != a)
+    return points[first[order]], renamed[is_kept], is_kept

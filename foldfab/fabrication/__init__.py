@@ -1,0 +1,1 @@
+"""A FoldSolution becomes an Assembly."""

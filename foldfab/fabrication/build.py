@@ -1,0 +1,115 @@
+"""The verb of this room: a FoldSolution becomes an Assembly (sections 5.6 and 6, Fabrication)."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+
+import numpy as np
+
+from foldfab.errors import FabricationError
+from foldfab.fabrication import solids
+from foldfab.fabrication.inspect import inspect
+from foldfab.fabrication.model import Assembly, Body, Finding, Joint
+from foldfab.fabrication.panels import panels
+from foldfab.fabrication.plates import axis_of, plate
+from foldfab.fabrication.solids import Solid
+from foldfab.folding.kinematics import configuration, key_times
+from foldfab.folding.mechanism import frames, joints, tilts
+from foldfab.folding.model import Chain, FoldSolution
+from foldfab.geometry.arrays import Array, Indices
+from foldfab.recipe.model import Posture
+
+Progress = Callable[[str, float], None]
+"""Called with what is being done and the share of it that is done."""
+
+HINGE_SKIN = 0.05
+"""Faces this close to a knuckle's radius are shown as hinge, mm."""
+
+
+def build(solution: FoldSolution, posture: Posture, progress: Progress | None = None) -> Assembly:
+    """The solids of a solution with their hinges and motion, inspected by the kernel.
+
+    Raises:
+        FabricationError: a finding means that the print would not work; it says which part and what to change.
+    """
+    tell = progress or (lambda what, share: None)
+    tell("solids", 0.0)
+    made, findings = _solids(solution)
+    times = key_times(solution)
+    poses = configuration(solution, times)
+    found = tuple(_joints(solution))
+    bodies = tuple(_body(solution, name, made[name]) for name in sorted(made))
+    findings += [Finding("note", note) for note in solution.notes]
+    draft = Assembly(solution, bodies, found, times, {n: poses[n] for n in made}, posture, ())
+    findings += inspect(draft, made, lambda share: tell("inspection", share))
+    fatal = [f for f in findings if f.is_fatal]
+    if fatal:
+        told = "".join(f"\n  {f.code}: {f.text}" for f in fatal[:12])
+        more = f"\n  and {len(fatal) - 12} more" if len(fatal) > 12 else ""
+        raise FabricationError(f"this print would not work:{told}{more}")
+    return Assembly(solution, bodies, found, times, {n: poses[n] for n in made}, posture, tuple(findings))
+
+
+def _solids(solution: FoldSolution) -> tuple[dict[str, Solid], list[Finding]]:
+    made: dict[str, Solid] = {}
+    findings = []
+    for base in solution.scaffold.bases:
+        carried = tuple(c for c in solution.chains if base.name in (c.anchor, c.far))
+        made[base.name], is_filled = plate(base, carried, solution.thickness)
+        if is_filled:
+            findings.append(
+                Finding("filled", f"{base.name} is printed as one full plate, because its parts are too far apart")
+            )
+    for chain in solution.chains:
+        made.update(zip(chain.panels, panels(chain, solution.thickness), strict=True))
+    return made, findings
+
+
+def _body(solution: FoldSolution, name: str, solid: Solid) -> Body:
+    vertices, faces = solids.mesh(solid)
+    chain = next((c for c in solution.chains if name in c.panels), None)
+    if chain is None:
+        return Body(
+            name, "base", vertices, faces, np.array([0.0, 0.0, 1.0]), float(solid.volume()), np.zeros(0, np.int64)
+        )
+    index = chain.panels.index(name)
+    normal = frames(chain, np.zeros(1))[1][0, index, 0]
+    hinge = _hinge_faces(solution, chain, index, vertices, faces)
+    return Body(name, "panel", vertices, faces, normal, float(solid.volume()), hinge)
+
+
+def _hinge_faces(solution: FoldSolution, chain: Chain, index: int, vertices: Array, faces: Indices) -> Indices:
+    """Faces of the knuckles of inserted hinges."""
+    plane = np.stack([chain.across, chain.rise])
+    axes = joints(chain, tilts(chain, np.zeros(1)))[0]
+    center = (vertices[faces].mean(axis=1) - chain.root) @ plane.T
+    inserted = [j for j in (index, index + 1) if 0 < j < len(chain.lengths)]
+    near = np.zeros(len(faces), dtype=bool)
+    for j in inserted:
+        near |= np.linalg.norm(center - axes[j], axis=1) < solution.thickness.panel / 2 + HINGE_SKIN
+    return np.nonzero(near)[0]
+
+
+def _joints(solution: FoldSolution) -> list[Joint]:
+    found = []
+    for chain in solution.chains:
+        angles = np.degrees(tilts(chain, np.array([0.0, 1.0])))
+        turns = np.concatenate([[[0.0], [0.0]], angles, [[0.0], [0.0]]], axis=1)
+        names = [chain.anchor, *chain.panels, *([chain.far] if chain.far else [])]
+        for j, (a, b) in enumerate(itertools.pairwise(names)):
+            turn = abs(float((turns[1, j + 1] - turns[1, j]) - (turns[0, j + 1] - turns[0, j])))
+            axis = _axis(chain, j)
+            inserted = 0 < j < len(chain.lengths)
+            found.append(Joint(f"{a}~{b}", (a, b), axis, solution.thickness.panel / 2, (0.0, round(turn, 3)), inserted))
+    return sorted(found, key=lambda j: j.name)
+
+
+def _axis(chain: Chain, j: int) -> Array:
+    """(2, 3) the ends of hinge j in the open posture."""
+    if j in (0, len(chain.lengths)):
+        middle = axis_of(chain, 0 if j == 0 else 1)
+    else:
+        middle = chain.root + joints(chain, tilts(chain, np.zeros(1)))[0, j] @ np.stack([chain.across, chain.rise])
+    ends: Array = middle + chain.hinge_spans[j][:, None] * chain.along
+    return ends

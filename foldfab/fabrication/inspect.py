@@ -1,0 +1,184 @@
+"""Inspection of an assembly by the kernel: what was made, not what was meant.
+
+Watertight and one body a part; no two parts closer than the clearance as printed; no two parts that meet at any
+sampled instant of the fold; hinges on their axes; everything fits the bed. A pair is tested again only where its
+relative pose has changed, so a fold costs as many booleans as there are moving neighbours.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+
+import numpy as np
+
+from foldfab.fabrication import solids
+from foldfab.fabrication.model import Assembly, Finding
+from foldfab.fabrication.solids import Solid
+from foldfab.folding.kinematics import configuration
+from foldfab.geometry.arrays import Array
+
+CLASH = 0.01
+"""Shared volume below this is rounding, mm³."""
+GAP_SHARE = 0.93
+"""The least gap as printed, as a share of the clearance; facets take a little."""
+FRAMES_PER_STEP = 14
+"""Instants of each step that are looked at."""
+STILL = 1e-7
+"""Relative poses that differ by less are the same."""
+
+
+def inspect(assembly: Assembly, made: dict[str, Solid], tell: Callable[[float], None]) -> list[Finding]:
+    """All findings about the assembly; fatal where it would not print or not fold."""
+    findings = _soundness(made)
+    findings += _fits(assembly)
+    if not any(f.is_fatal for f in findings):
+        findings += _gaps(assembly, made)
+        findings += _fold(assembly, made, tell)
+        findings += _axes(assembly)
+    return findings
+
+
+def printed_pose(assembly: Assembly, name: str) -> Array:
+    """(4, 4) where a body stands in the posture it is printed in, canonical frame."""
+    pose: Array = assembly.poses[name][0 if assembly.posture == "open" else -1]
+    return pose
+
+
+def extent(assembly: Assembly, *, folded: bool) -> Array:
+    """(3,) size of the axis-aligned bounds of all bodies in the recipe's axes, mm."""
+    turn = assembly.solution.scaffold.rotation.T
+    return _spread(assembly, -1 if folded else 0, turn)
+
+
+def printed_extent(assembly: Assembly) -> Array:
+    """(3,) size on the bed in the posture it is printed in, mm."""
+    if assembly.posture == "open":
+        return extent(assembly, folded=False)
+    return _spread(assembly, -1, np.eye(3))
+
+
+def _spread(assembly: Assembly, key: int, turn: Array) -> Array:
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    for body in assembly.bodies:
+        pose = assembly.poses[body.name][key]
+        points = (body.vertices @ pose[:3, :3].T + pose[:3, 3]) @ turn.T
+        low, high = np.minimum(low, points.min(0)), np.maximum(high, points.max(0))
+    size: Array = high - low
+    return size
+
+
+def _soundness(made: dict[str, Solid]) -> list[Finding]:
+    findings = []
+    for name, solid in sorted(made.items()):
+        count = solids.pieces(solid)
+        if solid.volume() <= 0 or count != 1:
+            text = f"{name} falls into {count} bodies; print larger, or with thinner plates"
+            findings.append(Finding("body", text, is_fatal=True))
+    return findings
+
+
+def _fits(assembly: Assembly) -> list[Finding]:
+    size, printer = printed_extent(assembly), assembly.solution.scaffold.recipe.print.printer
+    bed = np.array(printer.build_volume)
+    if (size <= bed).all() or (size[[1, 0, 2]] <= bed).all():
+        return []
+    told = " x ".join(f"{v:.1f}" for v in size)
+    share = min(float((bed / size).min()), 0.999)
+    text = (
+        f"{assembly.posture} it is {told} mm and does not fit the {printer.name}; "
+        f"print at scale {assembly.solution.scaffold.scale * share:.4g} or smaller"
+    )
+    return [Finding("bed", text, is_fatal=True)]
+
+
+def _gaps(assembly: Assembly, made: dict[str, Solid]) -> list[Finding]:
+    clearance = assembly.solution.thickness.gap
+    placed = {n: solids.moved(s, printed_pose(assembly, n)) for n, s in made.items()}
+    reach = {n: solids.bounds(s) for n, s in placed.items()}
+    findings = []
+    for a, b in itertools.combinations(sorted(placed), 2):
+        if not _near(reach[a], reach[b], clearance):
+            continue
+        shared = solids.overlap(placed[a], placed[b])
+        if shared > CLASH:
+            text = f"{a} and {b} overlap by {shared:.2f} mm³ as printed; print larger, or with thinner plates"
+            findings.append(Finding("overlap", text, is_fatal=True))
+            continue
+        gap = solids.gap(placed[a], placed[b], 2 * clearance)
+        if gap < GAP_SHARE * clearance:
+            text = f"{a} and {b} are only {gap:.3f} mm apart as printed, less than the clearance of {clearance:g} mm"
+            findings.append(Finding("gap", text + "; print larger, or with thinner plates", is_fatal=True))
+    return findings
+
+
+def _fold(assembly: Assembly, made: dict[str, Solid], tell: Callable[[float], None]) -> list[Finding]:
+    times = _instants(assembly)
+    poses = configuration(assembly.solution, times)
+    corners = {n: _corners(*solids.bounds(s)) for n, s in made.items()}
+    last: dict[tuple[str, str], Array] = {}
+    clashes: dict[tuple[str, str], tuple[float, float]] = {}
+    for k, t in enumerate(times):
+        tell(k / len(times))
+        reach = {n: _reach(corners[n], poses[n][k]) for n in made}
+        for a, b in itertools.combinations(sorted(made), 2):
+            if not _near(reach[a], reach[b], 0.0):
+                continue
+            relative = np.linalg.inv(poses[a][k]) @ poses[b][k]
+            if (a, b) in last and np.abs(last[a, b] - relative).max() < STILL:
+                continue
+            last[a, b] = relative
+            shared = solids.overlap(made[a], solids.moved(made[b], relative))
+            if shared > max(CLASH, clashes.get((a, b), (0.0, 0.0))[0]):
+                clashes[a, b] = (shared, float(t))
+    return [
+        Finding("clash", f"{a} and {b} meet at t = {t:.2f} ({v:.2f} mm³); {_advice(assembly, a, b)}", is_fatal=True)
+        for (a, b), (v, t) in sorted(clashes.items())
+    ]
+
+
+def _advice(assembly: Assembly, a: str, b: str) -> str:
+    patches = {c.patch for c in assembly.solution.chains for name in (a, b) if name in c.panels}
+    if patches:
+        return f"allow {' or '.join(sorted(patches))} more shrink steps, or print with thinner plates"
+    return "print larger, or with thinner plates"
+
+
+def _axes(assembly: Assembly) -> list[Finding]:
+    """Both halves of every hinge keep the same axis, but for half the clearance."""
+    limit = assembly.solution.thickness.gap / 2
+    findings = []
+    for joint in assembly.joints:
+        a, b = (assembly.poses[n] for n in joint.parts)
+        ends = [np.einsum("kij,ej->kei", p[:, :3, :3], joint.axis) + p[:, None, :3, 3] for p in (a, b)]
+        off = float(np.linalg.norm(ends[0] - ends[1], axis=-1).max())
+        if off > limit:
+            text = f"{joint.name} would have to give {off:.2f} mm, more than half the clearance"
+            findings.append(Finding("axis", text, is_fatal=True))
+        elif off > limit / 2:
+            findings.append(Finding("play", f"{joint.name} gives {off:.2f} mm of its play while folding"))
+    return findings
+
+
+def _instants(assembly: Assembly) -> Array:
+    marks = [np.linspace(s.start, s.end, FRAMES_PER_STEP * _sections(s.travel) + 1) for s in assembly.solution.steps]
+    found: Array = np.unique(np.concatenate([np.linspace(0.0, 1.0, 31), *marks]))
+    return found
+
+
+def _sections(travel: dict[str, Array]) -> int:
+    """How many different base motions a step has: stages of a press, at least one."""
+    return max(1, min(4, len({round(float(np.abs(way[-1]).sum()), 3) for way in travel.values()}) - 1))
+
+
+def _near(a: tuple[Array, Array], b: tuple[Array, Array], gap: float) -> bool:
+    return bool((a[0] <= b[1] + gap).all() and (b[0] <= a[1] + gap).all())
+
+
+def _corners(low: Array, high: Array) -> Array:
+    return np.array(list(itertools.product(*zip(low, high, strict=True))))
+
+
+def _reach(corners: Array, pose: Array) -> tuple[Array, Array]:
+    points = corners @ pose[:3, :3].T + pose[:3, 3]
+    return points.min(0), points.max(0)

@@ -1,0 +1,89 @@
+"""The noun of this room: an Assembly, printed bodies that are held together by hinges, and their motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from foldfab.folding.model import FoldSolution
+from foldfab.geometry.arrays import Array, Indices, frozen, frozen_indices
+from foldfab.recipe.model import Posture
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Body:
+    """One rigid printed part: a closed mesh in the canonical frame (d = -Z), open posture, print millimetres."""
+
+    name: str
+    kind: Literal["base", "panel"]
+    vertices: Array
+    """(n, 3) mm."""
+    faces: Indices
+    """(m, 3) counter-clockwise seen from outside."""
+    normal: Array
+    """(3,) unit normal of its plate, open posture, canonical frame."""
+    volume: float
+    """mm³."""
+    hinge_faces: Indices
+    """(k,) faces that belong to hinges that were added (for pictures)."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "vertices", frozen(self.vertices, -1, 3))
+        object.__setattr__(self, "faces", frozen_indices(self.faces, -1, 3))
+        object.__setattr__(self, "normal", frozen(self.normal, 3))
+        object.__setattr__(self, "hinge_faces", frozen_indices(self.hinge_faces, -1))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Joint:
+    """One hinge between two bodies."""
+
+    name: str
+    parts: tuple[str, str]
+    axis: Array
+    """(2, 3) the ends of the axis, open posture, canonical frame, mm."""
+    radius: float
+    """mm."""
+    range_deg: tuple[float, float]
+    """How far it may turn from the open posture."""
+    is_inserted: bool
+    """True where it splits a patch, False where it joins a patch to a base."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "axis", frozen(self.axis, 2, 3))
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """Something worth knowing about the result that does not stop it from working, or that does."""
+
+    code: str
+    """Short and stable, such as `widened` or `clash`."""
+    text: str
+    """One sentence: which part, which number, what to change."""
+    is_fatal: bool = False
+    """True where the print would not work."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Assembly:
+    """All bodies, joints and poses of one print."""
+
+    solution: FoldSolution
+    """What it was made from; `solution.scaffold.recipe` is the furniture."""
+    bodies: tuple[Body, ...]
+    """Sorted by name."""
+    joints: tuple[Joint, ...]
+    """Sorted by name."""
+    times: Array
+    """(k,) key times t in [0, 1], strictly increasing from 0 to 1."""
+    poses: dict[str, Array]
+    """By body, (k, 4, 4) rigid motions from the open posture, canonical frame, mm."""
+    posture: Posture
+    """How the print file is laid out."""
+    findings: tuple[Finding, ...]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "times", frozen(self.times, -1))
+        poses = {name: frozen(pose, -1, 4, 4) for name, pose in self.poses.items()}
+        object.__setattr__(self, "poses", poses)

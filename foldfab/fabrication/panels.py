@@ -1,0 +1,46 @@
+"""Panels: slabs of thickness K with a rounded end at each base hinge, cut for their neighbours' knuckles."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from foldfab.fabrication.hinges import carrier, follower, knuckles, room, webs
+from foldfab.fabrication.solids import Solid, box, cut, placed, rod, union
+from foldfab.folding.mechanism import frames
+from foldfab.folding.model import Chain, Thickness
+
+
+def panels(chain: Chain, thickness: Thickness) -> list[Solid]:
+    """The panels of a chain in the open posture, from the anchor on."""
+    origins, axes = frames(chain, np.zeros(1))
+    made = [_panel(chain, thickness, i) for i in range(len(chain.lengths))]
+    return [placed(body, origins[0, i], axes[0, i]) for i, body in enumerate(made)]
+
+
+def _panel(chain: Chain, thickness: Thickness, i: int) -> Solid:
+    """One panel in its own frame: x along its normal, y along the hinges, z along its length from its first axis."""
+    half, gap, last = thickness.panel / 2, thickness.gap, len(chain.lengths) - 1
+    low, high = float(chain.span[0]), float(chain.span[1])
+    length = float(chain.lengths[i])
+    start, end = (0.0 if i == 0 else gap / 2), (length if i == last else length - gap / 2)
+    solid = [box((-half, low, start), (half, high, end))]
+    holes: list[Solid] = []
+    extra: list[Solid] = []
+    sockets: list[Solid] = []
+    ends = [(0, 0.0)] if i == 0 else []
+    ends += [(last + 1, length)] if i == last and chain.far is not None else []
+    for hinge, z in ends:
+        solid.append(rod(half, low, high, 0.0, z))
+        marks = knuckles(chain.hinge_spans[hinge], thickness)
+        holes += room(marks.carrier, thickness.foot_room, thickness, 0.0, z)
+        extra += follower(marks, thickness, 0.0, z)
+    if i > 0:
+        marks, x = knuckles(chain.hinge_spans[i], thickness), float(chain.offsets[i])
+        holes += room(marks.carrier, thickness.knuckle_room, thickness, x, 0.0)
+        extra += follower(marks, thickness, x, 0.0) + webs(marks.follower, thickness, x, 0.0, 1.0)
+    if i < last:
+        marks, x = knuckles(chain.hinge_spans[i + 1], thickness), float(chain.offsets[i + 1])
+        holes += room(marks.follower, thickness.knuckle_room, thickness, x, length)
+        more, sockets = carrier(marks, thickness, x, length)
+        extra += more + webs(marks.carrier, thickness, x, length, -1.0)
+    return cut(union([cut(union(solid), holes), *extra]), sockets)

@@ -1,0 +1,81 @@
+"""Base plates: the outlines of the parts in a base patch, K thick, with the feet and plinths of their hinges."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from foldfab.fabrication.hinges import carrier, feet, knuckles
+from foldfab.fabrication.solids import Solid, box, cut, hull, pieces, placed, union
+from foldfab.folding.anatomy import base_boxes, faces
+from foldfab.folding.mechanism import joints, tilts
+from foldfab.folding.model import Chain, Thickness
+from foldfab.geometry.arrays import Array
+from foldfab.geometry.boxes import Boxes
+from foldfab.scaffold.model import BasePatch
+
+GROWTH = (0.0, 0.2, 0.5, 1.0, 2.0)
+"""By how much outlines are grown, mm, until parts that touch are one body."""
+RIM = 0.4
+"""How far the plate reaches beyond a foot, mm."""
+ROOT_SHARE = 0.5
+"""How deep a foot reaches into its plate, as a share of K."""
+
+
+def plate(base: BasePatch, chains: tuple[Chain, ...], thickness: Thickness) -> tuple[Solid, bool]:
+    """The solid of a base in the open posture, and whether it had to be filled to hold together."""
+    posts: list[Solid] = []
+    sockets: list[Solid] = []
+    pads: list[Solid] = []
+    for chain in chains:
+        for end in _ends(chain, base.name):
+            solid, holes, pad = _mount(chain, base, thickness, end)
+            posts, sockets, pads = posts + solid, sockets + holes, [*pads, pad]
+    body, is_filled = _one_body(base_boxes(base, thickness), pads)
+    return cut(union([body, *posts]), sockets), is_filled
+
+
+def _one_body(outlines: Boxes, pads: list[Solid]) -> tuple[Solid, bool]:
+    for growth in GROWTH:
+        body = union([_slab(outlines[i : i + 1], growth) for i in range(len(outlines))] + pads)
+        if pieces(body) == 1:
+            return body, False
+    return hull([_slab(outlines[i : i + 1], 0.0) for i in range(len(outlines))] + pads), True
+
+
+def _slab(outline: Boxes, growth: float) -> Solid:
+    half = outline.half[0] + np.array([growth, growth, 0.0])
+    return placed(box(-half, half), outline.center[0], outline.axes[0])
+
+
+def _ends(chain: Chain, base: str) -> list[int]:
+    """Which ends of a chain a base carries: 0 for the anchor's, 1 for the far one."""
+    return [i for i, name in enumerate((chain.anchor, chain.far)) if name == base]
+
+
+def _mount(chain: Chain, base: BasePatch, thickness: Thickness, end: int) -> tuple[list[Solid], list[Solid], Solid]:
+    """Feet and plinth, sockets, and the bit of plate below them."""
+    axis, rise = axis_of(chain, end), chain.rise * (1.0 if end == 0 else -1.0)
+    # Right-handed with z along the outward direction of the face.
+    frame = np.stack([chain.across, chain.along if end == 0 else -chain.along, rise])
+    span, hinge = (chain.span, chain.hinge_spans[0]) if end == 0 else (-chain.span[::-1], -chain.hinge_spans[-1][::-1])
+    marks = knuckles(hinge, thickness)
+    pad, half = chain.pads[end], thickness.panel / 2
+    depth = thickness.axis_height + pad + ROOT_SHARE * thickness.panel
+    solid, holes = carrier(marks, thickness, 0.0, 0.0)
+    solid += feet(marks, thickness, depth)
+    if pad > 0:
+        solid.append(box((-half, span[0], -depth), (half, span[1], -thickness.axis_height)))
+    face = faces(base, thickness)
+    low, high = (span if pad > 0 else hinge) + np.array([-RIM, RIM]) * (pad > 0)
+    below = thickness.axis_height + pad
+    slab = box((-half - RIM, low, -below - (face.top - face.bottom)), (half + RIM, high, -below))
+    made = [placed(s, axis, frame) for s in solid]
+    return made, [placed(h, axis, frame) for h in holes], placed(slab, axis, frame)
+
+
+def axis_of(chain: Chain, end: int) -> Array:
+    """(3,) the middle of the chain's first (0) or last (1) hinge axis in the open posture."""
+    if end == 0:
+        return chain.root
+    place: Array = chain.root + joints(chain, tilts(chain, np.zeros(1)))[0, -1] @ np.stack([chain.across, chain.rise])
+    return place

@@ -1,0 +1,117 @@
+"""The door to the solid kernel: the only module that imports manifold3d.
+
+manifold3d returns an empty solid instead of raising, so every solid that leaves this module has its status checked.
+Volumes in mm³, lengths in mm. Curved faces are polygons of `SIDES` sides: inscribed where material is added, and
+circumscribed where it is taken away, so that facets never eat into a gap.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TypeAlias
+
+import numpy as np
+from manifold3d import CrossSection, Error, Manifold, Mesh, OpType
+
+from foldfab.errors import FabricationError
+from foldfab.geometry.arrays import Array, Indices
+
+Solid: TypeAlias = Manifold
+"""A closed solid of the kernel."""
+
+SIDES = 32
+"""Sides of the polygon that stands for a circle."""
+
+
+def box(low: Iterable[float], high: Iterable[float]) -> Solid:
+    """The axis-aligned box between two corners (3,)."""
+    a, b = np.asarray(list(low), dtype=np.float64), np.asarray(list(high), dtype=np.float64)
+    return Manifold.cube((b - a).tolist()).translate(a.tolist())
+
+
+def rod(radius: float, start: float, end: float, x: float, z: float, *, is_hole: bool = False) -> Solid:
+    """A cylinder along +y from `start` to `end` around (x, z); a hole is circumscribed."""
+    size = radius / np.cos(np.pi / SIDES) if is_hole else radius
+    angle = 2 * np.pi * (np.arange(SIDES) + 0.5) / SIDES
+    circle = np.stack([size * np.cos(angle), size * np.sin(angle)], axis=1)
+    # Extruded along +z, then turned so that +z becomes +y: (x, y, z) -> (x, z, -y).
+    prism = Manifold.extrude(CrossSection([circle]), end - start)
+    turn = np.array([[1.0, 0.0, 0.0, x], [0.0, 0.0, 1.0, start], [0.0, -1.0, 0.0, z]])
+    return prism.transform(turn)
+
+
+def cone(radius: float, base: float, tip: float, x: float, z: float, *, is_hole: bool = False) -> Solid:
+    """A 45° cone along y around (x, z) with its mouth at `base`, pointing to `tip`."""
+    size = radius / np.cos(np.pi / SIDES) if is_hole else radius
+    shape = Manifold.cylinder(abs(tip - base), size, 0.0, SIDES)
+    sign = 1.0 if tip > base else -1.0
+    turn = np.array([[1.0, 0.0, 0.0, x], [0.0, 0.0, sign, base], [0.0, -sign, 0.0, z]])
+    return shape.transform(turn)
+
+
+def union(parts: list[Solid]) -> Solid:
+    """All parts as one."""
+    return checked(Manifold.batch_boolean(parts, OpType.Add)) if len(parts) > 1 else parts[0]
+
+
+def cut(body: Solid, holes: list[Solid]) -> Solid:
+    """The body without the holes."""
+    return checked(body - Manifold.batch_boolean(holes, OpType.Add)) if holes else body
+
+
+def placed(body: Solid, origin: Array, axes: Array) -> Solid:
+    """The body with its x, y and z turned into the rows of `axes` (3, 3) and its origin at `origin` (3,)."""
+    return body.transform(np.concatenate([np.asarray(axes).T, np.asarray(origin)[:, None]], axis=1))
+
+
+def moved(body: Solid, pose: Array) -> Solid:
+    """The body moved by a rigid motion (4, 4)."""
+    return body.transform(np.asarray(pose)[:3, :4])
+
+
+def hull(parts: list[Solid]) -> Solid:
+    """The convex hull of all parts."""
+    return checked(Manifold.batch_hull(parts))
+
+
+def pieces(body: Solid) -> int:
+    """How many separate bodies it is."""
+    return sum(1 for part in body.decompose() if part.volume() > 0)
+
+
+def overlap(a: Solid, b: Solid) -> float:
+    """Volume that two solids share, mm³."""
+    return float((a ^ b).volume())
+
+
+def gap(a: Solid, b: Solid, within: float) -> float:
+    """Least distance between two solids, at most `within`."""
+    return float(a.min_gap(b, within))
+
+
+def bounds(body: Solid) -> tuple[Array, Array]:
+    """Lower and upper corner (3,)."""
+    corners = np.array(body.bounding_box(), dtype=np.float64)
+    return corners[:3], corners[3:]
+
+
+def mesh(body: Solid) -> tuple[Array, Indices]:
+    """Vertices (n, 3) and triangles (m, 3), without slivers that vanish when written with six decimals."""
+    raw = checked(body).to_mesh64()
+    return np.array(raw.vert_properties[:, :3], dtype=np.float64), np.array(raw.tri_verts, dtype=np.int64)
+
+
+def from_mesh(vertices: Array, faces: Indices) -> Solid:
+    """The solid of a closed mesh."""
+    return checked(Manifold(Mesh(np.asarray(vertices, np.float32), np.asarray(faces, np.uint32))))
+
+
+def checked(body: Solid) -> Solid:
+    """The body itself.
+
+    Raises:
+        FabricationError: the kernel could not make it.
+    """
+    if body.status() != Error.NoError:
+        raise FabricationError(f"the solid kernel failed with {body.status().name}; try another scale or thickness")
+    return body

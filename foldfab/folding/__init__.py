@@ -1,0 +1,1 @@
+"""A Scaffold becomes a FoldSolution (sections 5.2 to 5.7)."""

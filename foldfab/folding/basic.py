@@ -1,0 +1,136 @@
+"""All folding solutions of a basic scaffold in isolation (section 5.3), with thickness (section 5.6).
+
+A *variant* says how a patch folds: slanted, or in place with N_h inserted hinges to the left or to the right, and how
+high the plinths are on which its hinges stand. An *option* is a variant with a window of the patch, or deletion.
+Costs are eq. 3, weighted by the importance λ of eq. 1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from foldfab.folding.model import Chain, Mechanism, Modification, Side, Thickness
+from foldfab.folding.site import Site
+from foldfab.geometry.arrays import Array
+from foldfab.recipe.model import FoldOptions
+
+STEEPEST = np.radians(75.0)
+"""A patch that leans more than this is too flat to be folded."""
+
+
+@dataclass(frozen=True, slots=True)
+class Variant:
+    """How a patch folds, whatever its window."""
+
+    mechanism: Mechanism
+    hinges: int
+    side: Side
+    pads: tuple[float, float] = (0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Option:
+    """A folding solution of a basic scaffold; `variant` is None where the patch is deleted."""
+
+    variant: Variant | None
+    window: tuple[int, int]
+    """First and last cutting point, in N_s-ths of the width."""
+    cost: float
+    """λ · eq. 3."""
+
+
+def variants(site: Site, options: FoldOptions, thickness: Thickness, *, may_slant: bool) -> tuple[Variant, ...]:
+    """The variants without plinths that are long enough for their hinges, cheapest first.
+
+    T-scaffolds may fold with any number of hinges, H-scaffolds slanted or in place with an odd number.
+    """
+    is_t = site.far is None
+    counts = range(options.max_hinges + 1) if is_t else range(1, options.max_hinges + 1, 2)
+    counts = counts if site.patch.hingeable else range(1 if is_t else 0)
+    sides: tuple[Side, Side] = ("l", "r")
+    found = [Variant("in-place", n, side) for n in counts if n or not is_t for side in sides]
+    if is_t or (may_slant and options.slanting):
+        found = [Variant("slanted", 0, side) for side in sides] + found
+    return tuple(v for v in found if v.hinges or v.mechanism == "slanted" if chain(site, v, site.span, thickness))
+
+
+def windows(steps: int) -> tuple[tuple[int, int], ...]:
+    """All windows of N_s cutting steps, the whole patch first, then by size and place."""
+    found = [(a, b) for a in range(steps) for b in range(a + 1, steps + 1)]
+    return tuple(sorted(found, key=lambda w: (w[0] - w[1], w)))
+
+
+def cost(hinges: int, kept: float, options: FoldOptions) -> float:
+    """Eq. 3: α N_h/N̂_h + (1 - α) R_s², with R_s = 1 - `kept`."""
+    return options.alpha * hinges / options.max_hinges + (1 - options.alpha) * (1 - kept) ** 2
+
+
+def window_span(site: Site, window: tuple[int, int], steps: int, thickness: Thickness) -> Array | None:
+    """Extent (2,) along the hinge direction of a window, or None where it is too narrow for a hinge.
+
+    A whole patch narrower than a hinge is widened to it.
+    """
+    half, width = site.patch.width / 2, site.patch.width
+    low = max(-half + width * window[0] / steps, float(site.span[0]))
+    high = min(-half + width * window[1] / steps, float(site.span[1]))
+    if high - low >= thickness.hinge_width:
+        return np.array([low, high])
+    if window != (0, steps):
+        return None
+    middle = (low + high) / 2
+    return np.array([middle - thickness.hinge_width / 2, middle + thickness.hinge_width / 2])
+
+
+def chain(site: Site, variant: Variant, span: Array, thickness: Thickness) -> Chain | None:
+    """The thick chain of a variant with the given extent, or None where its panels would be too short."""
+    if abs(site.lean) > STEEPEST:
+        return None
+    lengths = _lengths(site, variant, thickness)
+    if lengths is None:
+        return None
+    turn = np.pi / 2 if variant.side == "r" else -np.pi / 2
+    signs = -np.sign(turn) * np.where(np.arange(variant.hinges) % 2 == 0, 1.0, -1.0)
+    offsets = np.concatenate([[0.0], signs * thickness.axis_offset, [0.0]])
+    rise = thickness.axis_height + variant.pads[0]
+    root = site.foot + rise * (site.rise + np.tan(site.lean) * site.across)
+    ends = [_on(span, held, thickness) for held in site.held]
+    hinge_spans = np.array([ends[0], *([span] * variant.hinges), ends[1]])
+    return Chain(
+        site.patch.name, site.anchor, site.far, variant.mechanism, root, site.across, site.along, site.rise, site.lean,
+        turn, lengths, offsets, span, hinge_spans, variant.pads,
+    )  # fmt: skip
+
+
+def modification(site: Site, option: Option, options: FoldOptions, reason: str) -> Modification:
+    """What an option does to its patch, in the paper's terms."""
+    name, steps = site.patch.name, options.shrink_steps
+    if option.variant is None:
+        return Modification(name, "deleted", 0, None, (0.0, 0.0), site.importance, option.cost, reason)
+    kept = (option.window[0] / steps, option.window[1] / steps)
+    v = option.variant
+    return Modification(name, v.mechanism, v.hinges, v.side, kept, site.importance, option.cost, reason)
+
+
+def _lengths(site: Site, variant: Variant, thickness: Thickness) -> Array | None:
+    """Axis spacings (N_h + 1,): equal, and one longer by Δ where the patch starts slanted (figure 9)."""
+    taken = thickness.axis_height + variant.pads[0]
+    taken += thickness.axis_height + variant.pads[1] if site.far is not None else 0.0
+    total = (site.clear - taken) / np.cos(site.lean)
+    count, ends_free = variant.hinges + 1, site.far is None
+    shift = 0.0 if ends_free or variant.mechanism == "slanted" else total * abs(np.sin(site.lean))
+    lengths = np.full(count, (total - shift) / count)
+    folds_with_lean = (variant.side == "r") == (site.lean > 0)
+    lengths[0 if folds_with_lean else -1] += shift
+    least = [thickness.least_length(is_first=i == 0, is_last=i == count - 1, ends_free=ends_free) for i in range(count)]
+    return None if total <= 0 or (lengths < least).any() else lengths
+
+
+def _on(span: Array, held: tuple[float, float], thickness: Thickness) -> Array:
+    """The part of a span that lies over its base, at least as wide as a hinge and within the span."""
+    low, high = max(float(span[0]), held[0]), min(float(span[1]), held[1])
+    if high - low >= thickness.hinge_width:
+        return np.array([low, high])
+    middle = np.clip((low + high) / 2, span[0] + thickness.hinge_width / 2, span[1] - thickness.hinge_width / 2)
+    return np.array([middle - thickness.hinge_width / 2, middle + thickness.hinge_width / 2])

@@ -1,0 +1,101 @@
+"""How one chain moves: tilts of its panels, places of its hinge axes and poses, by fold progress s in [0, 1].
+
+A chain lives in its own vertical plane, x along `across` and y along `rise`. A panel of tilt θ has its length along
+(sin θ, cos θ) and its face normal along (cos θ, -sin θ). Base hinges have their axis in the mid-plane of the panel,
+inserted hinges (K + g)/2 off it on alternating faces, so that an axis on the +x face sends the elbow to -x.
+
+In-place folding from a slanted start (section 5.3, figure 9): of N_h + 1 panels, N_h are a long and one is a + Δ,
+where Δ is how far the far end stands beyond the root. The long one is the last where the first panel folds against
+the lean, and the first where it folds with it; both are the same motion, turned by half a turn. With ψ the tilt of
+the short panels, first all in line (a two-bar linkage) until they stand upright, then in a zig-zag, the tilt β of the
+long panel follows from the far end coming straight down: ℓ sin β - h cos β = Δ - h cos ψ - n a sin ψ.
+All formulas are closed; cost O(samples · panels).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from foldfab.folding.model import Chain
+from foldfab.geometry.arrays import Array
+from foldfab.geometry.rotation import cosine, sine
+
+QUARTER = np.pi / 2
+
+
+def tilts(chain: Chain, progress: Array) -> Array:
+    """Tilts (k, m) of the panels at each fold progress (k,), radians."""
+    s = np.asarray(progress, dtype=np.float64)[:, None]
+    if chain.mechanism != "in-place" or chain.far is None:
+        ends = chain.turn * np.where(np.arange(len(chain.lengths)) % 2 == 0, 1.0, -1.0)
+        return chain.lean + s * (ends - chain.lean)
+    return _in_place(chain, s)
+
+
+def joints(chain: Chain, angles: Array) -> Array:
+    """Hinge axes (k, m + 1, 2) in the plane of the chain relative to the root, for tilts (k, m); a tip last."""
+    normal, length = _directions(angles)
+    steps = np.diff(chain.offsets)[:, None] * normal + chain.lengths[:, None] * length
+    start = np.zeros((len(angles), 1, 2))
+    return np.concatenate([start, np.cumsum(steps, axis=1)], axis=1)
+
+
+def reach(chain: Chain, progress: Array) -> Array:
+    """Where the last axis stands relative to the root, (k, 2) in the plane of the chain, mm."""
+    last: Array = joints(chain, tilts(chain, progress))[:, -1]
+    return last
+
+
+def frames(chain: Chain, progress: Array) -> tuple[Array, Array]:
+    """Poses of the panels relative to the anchor's position in the open posture.
+
+    Returns:
+        origins (k, m, 3), the middle of each panel's mid-plane at its first axis, mm; and axes (k, m, 3, 3) whose rows
+        are the face normal, the hinge direction and the length direction.
+    """
+    angles = tilts(chain, progress)
+    normal, length = _directions(angles)
+    flat = joints(chain, angles)[:, :-1] - chain.offsets[:-1, None] * normal
+    plane = np.stack([chain.across, chain.rise])
+    along = np.broadcast_to(chain.along, (*angles.shape, 3))
+    return chain.root + flat @ plane, np.stack([normal @ plane, along, length @ plane], axis=2)
+
+
+def peak(chain: Chain) -> tuple[float, float]:
+    """The snap of a thick accordion: how far the far end rises before it falls (mm), and at which progress.
+
+    The rise is about N_h (K + g)²/(2 a) · N_h/(N_h + 1) for an upright accordion; 0 where there is none.
+    """
+    if chain.mechanism != "in-place" or chain.far is None:
+        return 0.0, 0.0
+    s = np.linspace(0.0, 0.5, 257)
+    height = reach(chain, s)[:, 1]
+    top = int(np.argmax(height))
+    return (float(height[top] - height[0]), float(s[top])) if top else (0.0, 0.0)
+
+
+def _directions(angles: Array) -> tuple[Array, Array]:
+    sin, cos = sine(angles), cosine(angles)
+    return np.stack([cos, -sin], axis=-1), np.stack([sin, cos], axis=-1)
+
+
+def _in_place(chain: Chain, s: Array) -> Array:
+    side = np.sign(chain.turn)
+    if side * chain.lean > 0:
+        return _against(-side, abs(chain.lean), chain.lengths[::-1], chain.offsets, s)[:, ::-1]
+    return _against(side, abs(chain.lean), chain.lengths, chain.offsets, s)
+
+
+def _against(side: float, lean: float, lengths: Array, offsets: Array, s: Array) -> Array:
+    """Tilts where the first panel folds against the lean and the last panel is the long one."""
+    hinges = len(lengths) - 1
+    short, long, off = lengths[0], lengths[-1], abs(offsets[1])
+    shift = lengths.sum() * np.sin(lean)
+    psi = lean + s * (-QUARTER - lean)
+    bars = np.where(psi >= 0, hinges, 1)
+    beta = np.arcsin((shift - off * np.cos(psi) - bars * short * np.sin(psi)) / np.hypot(long, off))
+    beta = np.where(s == 1.0, QUARTER, beta + np.arctan2(off, long))
+    zigzag = np.where(np.arange(hinges) % 2 == 0, 1.0, -1.0)
+    bent = np.where(psi >= 0, psi, psi * zigzag)
+    tilt: Array = -side * np.concatenate([bent, beta], axis=1)
+    return tilt

@@ -1,0 +1,141 @@
+"""Where each foldable patch stands in the thick model: between which faces, how wide, how far from its neighbours.
+
+Section 5.6: with thickness a panel reaches from base face to base face instead of from base to base, and two panels
+that meet in an edge need a gap between them. Cutting that gap costs nothing in eq. 3; it is the price of material.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from foldfab.folding.anatomy import Face, faces
+from foldfab.folding.model import Thickness
+from foldfab.geometry.arrays import Array
+from foldfab.geometry.boxes import Boxes, close_pairs, grown
+from foldfab.scaffold.model import BasePatch, Patch, Scaffold
+
+SIDE_BY_SIDE = np.cos(np.radians(5.0))
+"""Patches this parallel meet edge to edge; others meet edge to face."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Site:
+    """A foldable patch with thickness, in its open posture."""
+
+    patch: Patch
+    importance: float
+    """λ."""
+    anchor: str
+    """The base that carries it: the lower one, or the upper one where it hangs."""
+    far: str | None
+    """The other base, None for a T-scaffold."""
+    across: Array
+    """(3,) unit horizontal normal."""
+    along: Array
+    """(3,) unit hinge direction, across × along = rise."""
+    rise: Array
+    """(3,) ±Z."""
+    lean: float
+    """Tilt of the patch, radians."""
+    foot: Array
+    """(3,) where its middle line meets the anchor's face, mm."""
+    clear: float
+    """Height from the anchor's face to the far face, or to the tip of a T, mm."""
+    span: Array
+    """(2,) extent along `along` that neighbours leave free, mm."""
+    held: tuple[tuple[float, float], tuple[float, float]]
+    """Extent along `along` that the anchor and the far base cover, mm."""
+
+
+def sites(scaffold: Scaffold, thickness: Thickness) -> tuple[Site, ...]:
+    """The sites of all foldable patches, in their order, trimmed so that no two touch."""
+    total = sum(patch.area for patch in scaffold.patches)
+    plates = {base.name: faces(base, thickness) for base in scaffold.bases}
+    made = [_site(scaffold, patch, patch.area / total, plates, thickness) for patch in scaffold.patches]
+    return tuple(_apart(made, thickness))
+
+
+def slab(site: Site, thickness: Thickness) -> Boxes:
+    """The plain open panel (1,) of a patch that nothing was decided about yet."""
+    direction = np.sin(site.lean) * site.across + np.cos(site.lean) * site.rise
+    length = site.clear / np.cos(site.lean)
+    gap = thickness.gap
+    reach = (length - gap * (1 if site.far is None else 2)) / 2
+    center = site.foot + direction * (gap + reach) + site.along * float(site.span.mean())
+    normal = np.cross(site.along, direction)
+    half = np.array([[thickness.panel / 2, float(np.ptp(site.span)) / 2, max(reach, 0.0)]])
+    return Boxes(center[None], np.stack([normal, site.along, direction])[None], half)
+
+
+def _site(scaffold: Scaffold, patch: Patch, importance: float, plates: dict[str, Face], thickness: Thickness) -> Site:
+    hangs = patch.lower is None
+    anchor, far = (patch.upper, None) if hangs else (patch.lower, patch.upper)
+    assert anchor is not None
+    rise = np.array([0.0, 0.0, -1.0 if hangs else 1.0])
+    along = -patch.along if hangs else patch.along
+    across = np.cross(along, rise)
+    up = -patch.up if hangs else patch.up
+    start = plates[anchor].bottom if hangs else plates[anchor].top
+    foot = patch.center + patch.up * (start - patch.center[2]) / patch.up[2]
+    tip = patch.center[2] + abs(patch.up[2]) * patch.length / 2 * rise[2]
+    clear = plates[far].bottom - start if far is not None else abs(tip - start)
+    lean = float(np.arctan2(up @ across, up @ rise))
+    half = patch.width / 2
+    covered = tuple(_covered(scaffold.base(b), foot, along, thickness) if b else (-half, half) for b in (anchor, far))
+    return Site(
+        patch, importance, anchor, far, across, along, rise, lean, foot, float(clear),
+        np.array([-half, half]), (covered[0], covered[1]),
+    )  # fmt: skip
+
+
+def _covered(base: BasePatch, foot: Array, along: Array, thickness: Thickness) -> tuple[float, float]:
+    """What the base covers of the horizontal line through `foot`, as one interval; everything where it covers none."""
+    across = np.array([-along[1], along[0]])
+    low, high = np.inf, -np.inf
+    for outline in base.outlines:
+        sides = np.stack(
+            [outline.along * outline.half[0], np.array([-outline.along[1], outline.along[0]]) * outline.half[1]]
+        )
+        offset = outline.center - foot[:2]
+        if abs(offset @ across) <= np.abs(sides @ across).sum() + 1.5 * thickness.panel:
+            reach = float(np.abs(sides @ along[:2]).sum())
+            middle = float(offset @ along[:2])
+            low, high = min(low, middle - reach), max(high, middle + reach)
+    return (float(low), float(high)) if low < high else (-np.inf, np.inf)
+
+
+def _apart(made: list[Site], thickness: Thickness) -> list[Site]:
+    """Trims spans pair by pair until no two open panels are closer than the gap."""
+    if not made:
+        return made
+    solids = [slab(site, thickness) for site in made]
+    flat = Boxes(*(np.concatenate([getattr(s, f) for s in solids]) for f in ("center", "axes", "half")))
+    for i, j in zip(*close_pairs(grown(flat, thickness.gap / 2), grown(flat, thickness.gap / 2)), strict=True):
+        if i < j:
+            made[i], made[j] = _trimmed_pair(made[i], made[j], thickness)
+    return made
+
+
+def _trimmed_pair(a: Site, b: Site, thickness: Thickness) -> tuple[Site, Site]:
+    first, second = slab(a, thickness), slab(b, thickness)
+    if not len(close_pairs(grown(first, thickness.gap / 2), grown(second, thickness.gap / 2))[0]):
+        return a, b
+    short_a, short_b = _trimmed(a, second, b, thickness), _trimmed(b, first, a, thickness)
+    lost_a = 1 - float(np.ptp(short_a.span)) / float(np.ptp(a.span))
+    lost_b = 1 - float(np.ptp(short_b.span)) / float(np.ptp(b.span))
+    return (short_a, b) if (lost_a, a.patch.area) <= (lost_b, b.patch.area) else (a, short_b)
+
+
+def _trimmed(site: Site, other: Boxes, neighbour: Site, thickness: Thickness) -> Site:
+    """The site cut back along its span to clear the other's slab and, where they meet edge to face, its knuckles."""
+    middle = float((other.center[0] - site.foot) @ site.along)
+    reach = float(np.abs(other.axes[0] @ site.along) @ other.half[0])
+    flush = abs(site.across @ neighbour.across) > SIDE_BY_SIDE
+    room = thickness.gap if flush else 1.5 * thickness.gap + thickness.panel / 2 + thickness.gap
+    low, high = float(site.span[0]), float(site.span[1])
+    keep_low, keep_high = middle - reach - room - low, high - (middle + reach + room)
+    if keep_low >= keep_high:
+        return replace(site, span=np.array([low, max(low + 1e-3, min(high, low + keep_low))]))
+    return replace(site, span=np.array([min(high - 1e-3, max(low, high - keep_high)), high]))

@@ -1,0 +1,126 @@
+"""The verb of this room: a Scaffold becomes a FoldSolution (section 5, eq. 2)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from foldfab.errors import FoldingError
+from foldfab.folding import anatomy, basic
+from foldfab.folding.candidates import Problem, is_slantable
+from foldfab.folding.model import FoldSolution, Modification, Step, Thickness
+from foldfab.folding.ordering import Ordered, greedy, travel
+from foldfab.folding.scene import Scene, advanced, open_scene
+from foldfab.folding.site import Site, sites, slab
+from foldfab.folding.unit_fold import UnitFold
+from foldfab.folding.units import Unit, decompose
+from foldfab.geometry.arrays import Array
+from foldfab.geometry.boxes import bounds
+from foldfab.scaffold.model import Scaffold
+
+
+def solve(scaffold: Scaffold) -> FoldSolution:
+    """The folding solution of a scaffold by the paper's greedy order, with the thickness of its recipe.
+
+    Raises:
+        FoldingError: no order of the units folds the furniture; the message names what stands in the way.
+    """
+    thickness = Thickness(scaffold.recipe.print.thickness, scaffold.recipe.print.clearance)
+    if not scaffold.patches:
+        raise FoldingError("nothing folds along this direction: every part lies perpendicular to it already")
+    placed = {site.patch.name: site for site in sites(scaffold, thickness)}
+    units = decompose(scaffold)
+    problem = Problem(scaffold, scaffold.recipe.fold, thickness, placed, *_box(scaffold, thickness, placed))
+    _require_variants(problem, units)
+    scene = open_scene(scaffold, thickness, placed, units)
+    ordered = greedy(problem, scene)
+    if ordered.refusals:
+        raise FoldingError(_refused(ordered))
+    return _solution(problem, scene, units, ordered)
+
+
+def _box(scaffold: Scaffold, thickness: Thickness, placed: Mapping[str, Site]) -> tuple[Array, Array]:
+    """Bounds of the open furniture with thickness."""
+    corners = [bounds(anatomy.base_boxes(base, thickness)) for base in scaffold.bases]
+    corners += [bounds(slab(site, thickness)) for site in placed.values()]
+    return np.concatenate([low for low, _ in corners]).min(0), np.concatenate([high for _, high in corners]).max(0)
+
+
+def _require_variants(problem: Problem, units: tuple[Unit, ...]) -> None:
+    """A patch too short for any hinge at this scale is an error of its own: printing larger or thinner helps."""
+    short = []
+    for unit in units:
+        for name in unit.patches:
+            site = problem.sites[name]
+            if not basic.variants(site, problem.options, problem.thickness, may_slant=is_slantable(problem, unit)):
+                short.append(f"{name} ({site.clear:.1f} mm between its bases)")
+    if len(short) == sum(len(u.patches) for u in units):
+        raise FoldingError(
+            f"at scale 1:{1 / problem.scaffold.scale:.3g} no patch is long enough for its hinges: "
+            f"{', '.join(short[:4])}; "
+            f"print larger or with plates thinner than {problem.thickness.panel:g} mm"
+        )
+
+
+def _refused(ordered: Ordered) -> str:
+    told = [f"{', '.join(r.unit.patches[:4])}: {r.reason}" for r in ordered.refusals[:4]]
+    return "no folding solution: " + "; ".join(told)
+
+
+def _solution(problem: Problem, scene: Scene, units: tuple[Unit, ...], ordered: Ordered) -> FoldSolution:
+    steps = _steps(scene, ordered.folds)
+    chains = tuple(sorted((c for f in ordered.folds for c in f.chains), key=lambda c: c.patch))
+    changed = [_modification(problem, fold, patch) for fold in ordered.folds for patch in fold.unit.patches]
+    changed.sort(key=lambda m: m.patch)
+    cost = sum(m.cost for m in changed)
+    return FoldSolution(
+        problem.scaffold, problem.thickness, chains, tuple(changed), steps, cost, min(_bound(problem, units), cost),
+        _notes(problem, ordered),
+    )  # fmt: skip
+
+
+def _steps(scene: Scene, folds: tuple[UnitFold, ...]) -> tuple[Step, ...]:
+    total = sum(fold.motion.path for fold in folds)
+    steps, start = [], 0.0
+    for i, fold in enumerate(folds):
+        end = 1.0 if i == len(folds) - 1 else start + fold.motion.path / total
+        m, ways = fold.motion, travel(fold, scene)
+        steps.append(Step(fold.unit.name, fold.unit.patches, start, end, m.samples, ways, m.fold, m.play))
+        scene = advanced(scene, fold.unit, fold.chains, {b: w[-1] for b, w in ways.items()}, fold.unit.name)
+        start = end
+    return tuple(steps)
+
+
+def _modification(problem: Problem, fold: UnitFold, patch: str) -> Modification:
+    reason = fold.reasons.get(patch, "")
+    return basic.modification(problem.sites[patch], fold.chosen[patch], problem.options, reason)
+
+
+def _bound(problem: Problem, units: tuple[Unit, ...]) -> float:
+    """Sum of each patch's cheapest option in isolation: no solution can be cheaper."""
+    total = 0.0
+    for unit in units:
+        may_slant = is_slantable(problem, unit)
+        for name in unit.patches:
+            site = problem.sites[name]
+            found = basic.variants(site, problem.options, problem.thickness, may_slant=may_slant)
+            prices = [basic.cost(v.hinges, 1.0, problem.options) for v in found]
+            total += site.importance * min([*prices, basic.cost(0, 0.0, problem.options)])
+    return total
+
+
+def _notes(problem: Problem, ordered: Ordered) -> tuple[str, ...]:
+    notes = []
+    for fold in ordered.folds:
+        for chain in fold.chains:
+            if sum(chain.pads) > 0.01:
+                notes.append(
+                    f"{chain.patch} stands on plinths of {sum(chain.pads):.1f} mm so that the stack closes flat"
+                )
+            site = problem.sites[chain.patch]
+            if float(np.ptp(chain.span)) > float(np.ptp(site.span)) + 0.01:
+                notes.append(
+                    f"{chain.patch} is widened to {float(np.ptp(chain.span)):.1f} mm, the least width of a hinge"
+                )
+    return (*problem.scaffold.notes, *notes)

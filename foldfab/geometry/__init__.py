@@ -1,0 +1,1 @@
+"""Pure maths on arrays, without a word about furniture."""

@@ -1,0 +1,38 @@
+"""Rotations that are exact at quarter turns, so that what is axis-aligned stays so to the last bit."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from foldfab.geometry.arrays import Array
+
+SNAP = 1e-12
+"""Sines and cosines closer than this to -1, 0 or 1 are taken to be that value."""
+
+
+def cosine(angle: Array) -> Array:
+    """Cosine of angles in radians, exact at multiples of a quarter turn."""
+    return _snapped(np.cos(angle))
+
+
+def sine(angle: Array) -> Array:
+    """Sine of angles in radians, exact at multiples of a quarter turn."""
+    return _snapped(np.sin(angle))
+
+
+def upright(direction: Array) -> Array:
+    """The rotation (3, 3) that turns the unit vector `direction` (3,) into -Z; exact for axis directions.
+
+    Directions along an axis give a permutation of the axes, and -Z the identity.
+    """
+    up = -np.asarray(direction, dtype=np.float64)
+    side = np.zeros(3)
+    side[int(np.argmin(np.abs(up)))] = 1.0
+    side -= (side @ up) * up
+    side /= np.linalg.norm(side)
+    return np.stack([side, np.cross(up, side), up])
+
+
+def _snapped(values: Array) -> Array:
+    nearest = np.round(values)
+    return np.where(np.abs(values - nearest) < SNAP, nearest, values)

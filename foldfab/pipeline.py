@@ -1,0 +1,175 @@
+"""The corridor: a recipe file becomes a print folder. The only module that knows the order of the rooms.
+
+recipe   = load("bench.json")
+solution = foldabilize(recipe)
+assembly = fabricate(solution)
+write(assembly, Path("prints/bench"))
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from foldfab.errors import AbstractionError, FoldfabError, FoldingError
+from foldfab.folding.model import FoldSolution
+from foldfab.folding.solve import solve
+from foldfab.geometry.arrays import Array
+from foldfab.recipe.model import Posture, Recipe
+from foldfab.scaffold.abstract import abstract
+from foldfab.scaffold.model import Scaffold
+
+if TYPE_CHECKING:
+    from foldfab.export.report import Report
+    from foldfab.fabrication.model import Assembly
+
+Progress = Callable[[str], None]
+"""Called with what is being done, one short line."""
+
+AXES = {"-z": (0, 0, -1), "-x": (-1, 0, 0), "-y": (0, -1, 0), "+z": (0, 0, 1), "+x": (1, 0, 0), "+y": (0, 1, 0)}
+"""The directions that "auto" tries, in this order."""
+MARGIN_THICKNESSES = 2.0
+"""How much wider than the furniture's sheets the print may be on account of plates and knuckles, in K."""
+SCALE_ROUNDS = 6
+"""How often the scale of a folded print is reduced until it fits the bed."""
+
+
+def load(text: str, **overrides: Any) -> Recipe:
+    """The recipe in a file, or among those that foldfab ships, with options of the command line put over it.
+
+    Raises:
+        RecipeError: every problem with the file or the options, each with its place.
+    """
+    from foldfab.recipe.edit import override
+    from foldfab.recipe.find import find
+    from foldfab.recipe.read import read
+
+    recipe = read(find(text))
+    return override(recipe, **overrides) if overrides else recipe
+
+
+def foldabilize(recipe: Recipe) -> FoldSolution:
+    """The cheapest folding solution of a recipe along its direction, or along the best of six where it names none.
+
+    Raises:
+        AbstractionError: the parts make no scaffold along the direction; the message names directions that would do.
+        FoldingError: nothing folds.
+    """
+    if recipe.direction is not None:
+        return _along(recipe, recipe.direction)
+    found: list[tuple[float, int, FoldSolution]] = []
+    reasons = []
+    for rank, (name, axis) in enumerate(AXES.items()):
+        try:
+            solution = _along(recipe, np.array(axis, dtype=np.float64))
+        except FoldfabError as error:
+            reasons.append(f"{name}: {error}")
+            continue
+        if solution.cost < min((f[0] for f in found), default=np.inf) - 1e-9:
+            found.append((solution.cost, rank, solution))
+    if not found:
+        raise FoldingError(f"{recipe.name} folds along none of the six axis directions\n  " + "\n  ".join(reasons))
+    return min(found, key=lambda f: f[:2])[2]
+
+
+def fabricate(solution: FoldSolution, *, posture: Posture | None = None, progress: Progress | None = None) -> Assembly:
+    """The printed bodies of a solution, inspected.
+
+    Raises:
+        FabricationError: the print would not work; the message says which part and what to change.
+    """
+    from foldfab.fabrication.build import build
+
+    tell = (lambda what, share: progress(f"{what} {share:.0%}")) if progress else None
+    return build(solution, posture or solution.scaffold.recipe.print.posture, tell)
+
+
+def write(assembly: Assembly, folder: Path | str) -> list[Path]:
+    """Writes the print folder, whole or not at all, and returns its files.
+
+    Raises:
+        PrintFolderError: the folder cannot be written.
+    """
+    from foldfab.export.write import write as write_folder
+
+    return write_folder(assembly, Path(folder))
+
+
+def check(folder: Path | str) -> Report:
+    """Inspects a print folder from its files alone."""
+    from foldfab.export.check import inspect_folder
+
+    return inspect_folder(Path(folder))
+
+
+def shipped() -> tuple[Path, ...]:
+    """The recipes that foldfab ships, sorted."""
+    from foldfab.recipe.find import shipped as found
+
+    return found()
+
+
+def _along(recipe: Recipe, direction: Array) -> FoldSolution:
+    scale = recipe.print.scale or _fitting_scale(recipe, direction)
+    if recipe.print.scale is not None or recipe.print.posture == "open":
+        return solve(_abstracted(recipe, direction, scale))
+    for _ in range(SCALE_ROUNDS):
+        solution = solve(_abstracted(recipe, direction, scale))
+        share = _share_of_bed(solution)
+        if share <= 1.0:
+            return solution
+        scale *= 0.99 / share
+    raise FoldingError(f"{recipe.name} folded does not fit the {recipe.print.printer.name} at any scale; print it open")
+
+
+def _abstracted(recipe: Recipe, direction: Array, scale: float) -> Scaffold:
+    try:
+        return abstract(recipe, direction, scale)
+    except AbstractionError as error:
+        able = [name for name, axis in AXES.items() if name[0] == "-" and _has_scaffold(recipe, axis, scale)]
+        advice = f"try --direction {' or '.join(able)}" if able else "no axis direction gives a scaffold"
+        told = np.array2string(np.asarray(direction), precision=3, suppress_small=True)
+        raise AbstractionError(f"{recipe.name} along {told}: {error}; {advice}", error.parts) from error
+
+
+def _has_scaffold(recipe: Recipe, axis: tuple[int, int, int], scale: float) -> bool:
+    try:
+        return bool(abstract(recipe, np.array(axis, dtype=np.float64), scale).patches)
+    except AbstractionError:
+        return False
+
+
+def _fitting_scale(recipe: Recipe, direction: Array) -> float:
+    """The largest scale at which the open furniture (printed folded: its footprint) fits the bed, either way round."""
+    size = _size(recipe)
+    bed = np.array(recipe.print.printer.build_volume) - MARGIN_THICKNESSES * recipe.print.thickness
+    if (bed <= 0).any():
+        raise FoldingError(f"the {recipe.print.printer.name} is too small for plates of {recipe.print.thickness:g} mm")
+    if recipe.print.posture == "folded":
+        from foldfab.geometry.rotation import upright
+
+        size = np.abs(upright(direction)) @ size
+        size[2] = 0.0
+    fits = bed / np.maximum(size, 1e-9)
+    turned = bed[[1, 0, 2]] / np.maximum(size, 1e-9)
+    return float(max(fits.min(), turned.min()))
+
+
+def _size(recipe: Recipe) -> Array:
+    """(3,) true size of the furniture's bounds, mm."""
+    reach = np.array([np.abs(p.axes.T) @ p.size / 2 for p in recipe.parts])
+    center = np.array([p.center for p in recipe.parts])
+    size: Array = (center + reach).max(0) - (center - reach).min(0)
+    return size
+
+
+def _share_of_bed(solution: FoldSolution) -> float:
+    """How much of the bed the folded furniture takes, 1 where it just fits."""
+    from foldfab.folding.kinematics import folded_size
+
+    bed = np.array(solution.scaffold.recipe.print.printer.build_volume)
+    size = folded_size(solution)
+    return float(min((size / bed).max(), (size[[1, 0, 2]] / bed).max()))

@@ -1,0 +1,126 @@
+"""A Recipe with some of its options replaced by those of the command line, under the same rules."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import Any
+
+from pydantic import ValidationError
+
+from foldfab.errors import Problem, RecipeError
+from foldfab.recipe.build import unit_direction
+from foldfab.recipe.form import Direction, FoldForm, Form, PrintForm
+from foldfab.recipe.model import Recipe
+from foldfab.recipe.printers import printer as find_printer
+from foldfab.recipe.problems import problems_of
+
+SOURCE = "command line"
+
+
+class _DirectionForm(Form):
+    direction: Direction = "auto"
+
+
+def override(
+    recipe: Recipe,
+    *,
+    direction: str | None = None,
+    printer: str | None = None,
+    scale: str | float | None = None,
+    clearance: str | float | None = None,
+    thickness: str | float | None = None,
+    posture: str | None = None,
+    alpha: str | float | None = None,
+    max_hinges: str | int | None = None,
+    shrink_steps: str | int | None = None,
+    slanting: bool | None = None,
+    stay_in_box: bool | None = None,
+) -> Recipe:
+    """`recipe` with every value replaced that is not None; numbers may come as text.
+
+    A direction is an axis such as "-x", a vector such as "0,0,-1", or "auto"; a scale is "fit", a number, or a
+    ratio such as "1:5".
+
+    Raises:
+        RecipeError: every value that is not allowed, with the option's name as its place.
+    """
+    fold = {"alpha": alpha, "max_hinges": max_hinges, "shrink_steps": shrink_steps}
+    fold_given = {**_given(fold), **_present({"slanting": slanting, "stay_in_box": stay_in_box})}
+    print_given = _given({"clearance": clearance, "thickness": thickness, "posture": posture, "scale": _ratio(scale)})
+    way = {} if direction is None else {"direction": _vector(direction)}
+    problems = _check(_DirectionForm, way) + _check(FoldForm, fold_given) + _check(PrintForm, print_given)
+    problems += _check_printer(printer)
+    if problems:
+        raise RecipeError(SOURCE, tuple(problems))
+    return _replaced(recipe, way, fold_given, print_given, printer)
+
+
+def _replaced(
+    recipe: Recipe, way: dict[str, Any], fold: dict[str, Any], options: dict[str, Any], printer: str | None
+) -> Recipe:
+    fold = {key: float(value) if key == "alpha" else value for key, value in fold.items()}
+    options = {key: float(value) if isinstance(value, int) else value for key, value in options.items()}
+    if options.get("scale") == "fit":
+        options["scale"] = None
+    if printer is not None:
+        options["printer"] = find_printer(printer)
+    return replace(
+        recipe,
+        direction=unit_direction(way["direction"]) if way else recipe.direction,
+        fold=replace(recipe.fold, **fold),
+        print=replace(recipe.print, **options),
+    )
+
+
+def _present(values: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in values.items() if value is not None}
+
+
+def _given(values: dict[str, Any]) -> dict[str, Any]:
+    return {key: _number(value) if isinstance(value, str) else value for key, value in _present(values).items()}
+
+
+def _number(text: str) -> int | float | str:
+    """The number that a text holds, the text itself where it holds none."""
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text
+
+
+def _ratio(scale: str | float | None) -> str | float | None:
+    """The number behind 1:5 or 1/5, anything else as it came."""
+    ratio = re.fullmatch(r"\s*(\d+(?:\.\d+)?)\s*[:/]\s*(\d+(?:\.\d+)?)\s*", scale) if isinstance(scale, str) else None
+    if ratio is None or float(ratio[2]) == 0:
+        return scale
+    return float(ratio[1]) / float(ratio[2])
+
+
+def _vector(direction: str) -> str | list[int | float | str]:
+    text = direction.strip()
+    return [_number(entry.strip()) for entry in text.strip("[]()").split(",")] if "," in text else text
+
+
+def _check(form: type[Form], given: dict[str, Any]) -> list[Problem]:
+    try:
+        form.model_validate(given)
+    except ValidationError as error:
+        return [Problem(_option(problem.place), problem.text) for problem in problems_of(error)]
+    return []
+
+
+def _check_printer(text: str | None) -> list[Problem]:
+    try:
+        if text is not None:
+            find_printer(text)
+    except ValueError as error:
+        return [Problem("--printer", str(error))]
+    return []
+
+
+def _option(place: str) -> str:
+    """`max_hinges` as it is written on the command line."""
+    return "--" + place.split("[")[0].replace("_", "-")

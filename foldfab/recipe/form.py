@@ -1,0 +1,210 @@
+"""The form of a recipe file: which keys there are and what each may hold.
+
+Everything that can be said about one field alone is said here, so that all fields of a file are judged in one pass;
+`problems` turns what pydantic finds into sentences, and `schema` turns the form into a JSON Schema for editors.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    StringConstraints,
+    Tag,
+    ValidationInfo,
+    WithJsonSchema,
+)
+from pydantic_core import PydanticCustomError
+
+from foldfab.recipe.model import FoldOptions, Posture, PrintOptions
+from foldfab.recipe.names import folder_name_problem, has_control_characters, part_name_problem
+from foldfab.recipe.printers import DEFAULT_PRINTER, LARGEST, PRINTERS, SMALLEST
+
+MOST_PARTS = 2000
+FARTHEST = 1e6
+"""mm; larger sizes and coordinates are a wrong unit."""
+SMALLEST_SIZE = 0.01
+"""mm; thinner boxes are a wrong unit."""
+AXES_TOLERANCE = 1e-3
+"""How far the rows of `axes` may be from orthonormal, in every entry of axes · axesᵀ."""
+OWN_WORDS = "foldfab"
+"""The type of errors whose message is already a sentence of ours."""
+
+_FOLD = FoldOptions()
+_PRINT = PrintOptions(printer=DEFAULT_PRINTER)
+
+Units = Literal["mm", "cm", "m", "in"]
+MILLIMETRES: dict[str, float] = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
+"""By unit."""
+
+
+def _complain(text: str | None) -> None:
+    if text is not None:
+        raise PydanticCustomError(OWN_WORDS, "{text}", {"text": text})
+
+
+def _folder(name: str) -> str:
+    _complain(folder_name_problem(name))
+    return name
+
+
+def _part_name(name: str) -> str:
+    _complain(part_name_problem(name))
+    return name
+
+
+def _printer_name(text: str) -> str:
+    _complain(None if 0 < len(text.strip()) <= 100 else "should be one line of 1 to 100 characters")
+    return _one_line(text)
+
+
+def _one_line(text: str) -> str:
+    _complain("should be one line without control characters" if has_control_characters(text) else None)
+    return text
+
+
+def _in_reach(value: float, info: ValidationInfo) -> float:
+    factor = (info.context or {}).get("factor", 1.0)
+    far = abs(value) * factor > FARTHEST
+    _complain(f"{value:g} is more than {FARTHEST:.0f} mm; is the unit right?" if far else None)
+    return value
+
+
+def _thick_enough(value: float, info: ValidationInfo) -> float:
+    factor = (info.context or {}).get("factor", 1.0)
+    thin = 0 < value * factor < SMALLEST_SIZE
+    _complain(f"{value:g} is less than {SMALLEST_SIZE:g} mm; is the unit right?" if thin else None)
+    return value
+
+
+def _right_handed(rows: list[list[float]]) -> list[list[float]]:
+    matrix = np.array(rows)
+    with np.errstate(over="ignore", invalid="ignore"):
+        is_orthonormal = bool(np.abs(matrix @ matrix.T - np.eye(3)).max() <= AXES_TOLERANCE)
+    _complain(None if is_orthonormal else "should be three unit rows at right angles to each other")
+    left = float(np.linalg.det(matrix)) < 0
+    _complain("should be right-handed (row 1 × row 2 = row 3); change the sign of the last row" if left else None)
+    return rows
+
+
+def _not_zero(vector: list[float]) -> list[float]:
+    _complain("is zero; give a vector that points somewhere, such as [0, 0, -1]" if not any(vector) else None)
+    return vector
+
+
+def _known_printer(text: str) -> str:
+    known = ", ".join(PRINTERS)
+    own = '{"name": "mine", "build_volume": [200, 200, 180]}'
+    _complain(None if text in PRINTERS else f"should be one of {known}, or {own}, not {text!r}")
+    return text
+
+
+Coordinate = Annotated[float, AfterValidator(_in_reach)]
+Length = Annotated[float, Field(gt=0), AfterValidator(_thick_enough), AfterValidator(_in_reach)]
+Side = Annotated[float, Field(ge=SMALLEST, le=LARGEST)]
+Three = Field(min_length=3, max_length=3)
+Vector = Annotated[list[float], Three]
+AxisName = Literal["x", "+x", "-x", "y", "+y", "-y", "z", "+z", "-z", "auto"]
+Direction = Annotated[
+    Annotated[AxisName, Tag("<axis>")] | Annotated[Vector, AfterValidator(_not_zero), Tag("<vector>")],
+    Discriminator(lambda value: "<vector>" if isinstance(value, list) else "<axis>"),
+]
+Scale = Annotated[
+    Annotated[Literal["fit"], Tag("<fit>")] | Annotated[float, Field(ge=1e-5, le=1e3), Tag("<number>")],
+    Discriminator(lambda value: "<fit>" if isinstance(value, str) else "<number>"),
+]
+
+
+TAGS = ("<axis>", "<vector>", "<fit>", "<number>", "<id>", "<own>")
+"""What keeps the branches of unions apart; left out of places."""
+
+
+class Form(BaseModel):
+    """Strict: nothing is converted, nothing unknown is let through."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False, frozen=True)
+
+
+class BoxForm(Form):
+    """A box: its middle, its lengths along its axes, and its axes where they are not x, y and z."""
+
+    center: Annotated[list[Coordinate], Three] = Field(description="The middle of the box.")
+    size: Annotated[list[Length], Three] = Field(description="Full lengths along the rows of axes.")
+    axes: Annotated[list[Vector], Three, AfterValidator(_right_handed)] | None = Field(
+        default=None, description="Three right-handed orthonormal rows; x, y and z where missing."
+    )
+
+
+class PartForm(Form):
+    """One segment of the furniture."""
+
+    name: Annotated[str, AfterValidator(_part_name)] = Field(description="Unique in the recipe; becomes a file's name.")
+    box: BoxForm
+    hingeable: bool = Field(default=True, description="False where no hinge may be inserted in its interior.")
+
+
+class FoldForm(Form):
+    """What the solver may do."""
+
+    alpha: float = Field(
+        default=_FOLD.alpha, ge=0, le=1, description="Weight of inserted hinges (1) against shrinking (0)."
+    )
+    max_hinges: int = Field(default=_FOLD.max_hinges, ge=1, le=9, description="Most hinges inserted in one patch.")
+    shrink_steps: int = Field(
+        default=_FOLD.shrink_steps, ge=1, le=20, description="How many pieces a patch is cut into for shrinking."
+    )
+    slanting: bool = Field(default=_FOLD.slanting, description="Whether two bases may shear past each other.")
+    stay_in_box: bool = Field(
+        default=_FOLD.stay_in_box, description="Whether the fold must stay within the furniture's bounding box."
+    )
+
+
+class PrinterForm(Form):
+    """A printer of one's own."""
+
+    name: Annotated[str, AfterValidator(_printer_name)]
+    build_volume: Annotated[list[Side], Three] = Field(description="x, y and z that it can print, mm.")
+
+
+PrinterChoice = Annotated[
+    Annotated[str, AfterValidator(_known_printer), WithJsonSchema({"enum": list(PRINTERS)}), Tag("<id>")]
+    | Annotated[PrinterForm, Tag("<own>")],
+    Discriminator(lambda value: "<own>" if isinstance(value, dict) else "<id>"),
+]
+
+
+class PrintForm(Form):
+    """How the model is to be printed; always in millimetres of the print."""
+
+    printer: PrinterChoice = Field(default=DEFAULT_PRINTER.name, description="A known printer or one's own.")
+    thickness: float = Field(default=_PRINT.thickness, ge=1, le=20, description="Thickness of plates and panels, mm.")
+    clearance: float = Field(
+        default=_PRINT.clearance, ge=0.1, le=1, description="Gap that a hinge is printed with, mm."
+    )
+    posture: Posture = Field(default=_PRINT.posture, description="Whether it is printed open or folded.")
+    scale: Scale = Field(default="fit", description="Print size over true size; fit is the largest on the printer.")
+
+
+class RecipeForm(Form):
+    """A piece of furniture, the direction it folds in, and how it is to be folded and printed."""
+
+    schema_: str | None = Field(default=None, alias="$schema", description="Where editors find this schema.")
+    name: Annotated[str, AfterValidator(_folder)] | None = Field(
+        default=None, description="The print folder's name; the file's name without .json where missing."
+    )
+    about: Annotated[str, StringConstraints(max_length=500), AfterValidator(_one_line)] = Field(
+        default="", description="One line: what the furniture is modelled after."
+    )
+    units: Units = Field(default="mm", description="Unit of all centers and sizes.")
+    direction: Direction = Field(
+        default="auto", description="Folding direction, a named axis or a vector; auto tries all six axes."
+    )
+    parts: list[PartForm] = Field(min_length=1, max_length=MOST_PARTS)
+    fold: FoldForm = Field(default_factory=FoldForm)
+    print: PrintForm = Field(default_factory=PrintForm)

@@ -1,0 +1,91 @@
+"""The noun of this room: a Recipe, furniture split into parts, a folding direction and two sets of options."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+from foldfab.geometry.arrays import Array, frozen
+
+Posture = Literal["open", "folded"]
+POSTURES: tuple[Posture, ...] = ("open", "folded")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Part:
+    """One segment of the furniture, as its tight oriented box."""
+
+    name: str
+    """Unique within the recipe."""
+    center: Array
+    """(3,) mm."""
+    size: Array
+    """(3,) mm, full lengths along the rows of `axes`."""
+    axes: Array
+    """(3, 3) right-handed orthonormal rows."""
+    hingeable: bool = True
+    """False where no hinge may be inserted in its interior (section 5.7)."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "center", frozen(self.center, 3))
+        object.__setattr__(self, "size", frozen(self.size, 3))
+        object.__setattr__(self, "axes", frozen(self.axes, 3, 3))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FoldOptions:
+    """What the solver may do; the defaults are the paper's (section 6, Parameters)."""
+
+    alpha: float = 0.5
+    """α in [0, 1]: the weight of splits against shrinking (eq. 3)."""
+    max_hinges: int = 3
+    """N̂_h, the most hinges that may be inserted in a patch."""
+    shrink_steps: int = 5
+    """N_s, how many pieces a patch is cut into for shrinking."""
+    slanting: bool = True
+    """Whether H-scaffolds may fold slanted (T-scaffolds always may)."""
+    stay_in_box: bool = False
+    """Whether the fold must stay within the bounding box of the input."""
+
+
+@dataclass(frozen=True, slots=True)
+class Printer:
+    """A printer by the volume it can build."""
+
+    name: str
+    build_volume: tuple[float, float, float]
+    """mm, x × y × z."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PrintOptions:
+    """How the model is to be printed."""
+
+    printer: Printer
+    thickness: float = 4.0
+    """K, the thickness of plates and panels, mm in print."""
+    clearance: float = 0.3
+    """g, the gap that a hinge is printed with, mm in print."""
+    posture: Posture = "open"
+    scale: float | None = None
+    """Print size over true size; None is the largest that fits the printer."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Recipe:
+    """Furniture as it was understood from a file."""
+
+    name: str
+    direction: Array | None
+    """(3,) unit folding direction d; None tries all six axis directions."""
+    parts: tuple[Part, ...]
+    fold: FoldOptions
+    print: PrintOptions
+    about: str = ""
+    """One line: what the furniture is modelled after."""
+    source: str = field(default="<memory>")
+    """Where it came from, for messages."""
+
+    def __post_init__(self) -> None:
+        if self.direction is not None:
+            object.__setattr__(self, "direction", frozen(self.direction, 3))

@@ -1,0 +1,86 @@
+"""A recipe file becomes a Recipe, or one error that lists everything that is wrong with it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from foldfab.errors import Problem, RecipeError
+from foldfab.recipe.build import build
+from foldfab.recipe.document import load, repeated_keys
+from foldfab.recipe.form import MILLIMETRES, RecipeForm
+from foldfab.recipe.model import Recipe
+from foldfab.recipe.names import folder_name, folder_name_problem, same_name
+from foldfab.recipe.problems import EXPECTED, TOP, problems_of, shown
+
+MOST_PROBLEMS = 500
+"""More than these are counted, not listed."""
+
+
+def read(path: Path) -> Recipe:
+    """The recipe in a JSON file; its name is by default the file's, without `.json`.
+
+    Raises:
+        RecipeError: every problem of the file at once, each with its place.
+    """
+    return parse(load(path), str(path), path.stem)
+
+
+def parse(data: object, source: str, default_name: str) -> Recipe:
+    """The recipe in JSON data; `source` is for messages, `default_name` for recipes that have none.
+
+    Raises:
+        RecipeError: every problem of the data at once, each with its place.
+    """
+    if not isinstance(data, dict):
+        raise RecipeError(source, (Problem(TOP, f"should be {EXPECTED['']}, not {shown(data)}"),))
+    form, problems = _form(data)
+    problems += repeated_keys(data) + _repeated_names(data.get("parts")) + _default_name(data, default_name)
+    if form is None or problems:
+        raise RecipeError(source, _limited(problems))
+    return build(form, form.name or default_name, source)
+
+
+def _form(data: dict[str, object]) -> tuple[RecipeForm | None, list[Problem]]:
+    units = data.get("units", "mm")
+    factor = MILLIMETRES.get(units, 1.0) if isinstance(units, str) else 1.0
+    try:
+        return RecipeForm.model_validate(data, context={"factor": factor}), []
+    except ValidationError as error:
+        return None, problems_of(error)
+
+
+def _repeated_names(parts: object) -> list[Problem]:
+    """A problem for each part whose name, or nearly so, an earlier one has."""
+    problems: list[Problem] = []
+    seen: dict[str, tuple[int, str]] = {}
+    for index, name in _names(parts):
+        first, other = seen.setdefault(same_name(name), (index, name))
+        if first != index:
+            how = "repeats the name" if name == other else "differs only by case or spelling from the name"
+            text = f"{how} {shown(other)} of parts[{first}]; every part needs a name of its own"
+            problems.append(Problem(f"parts[{index}].name", text))
+    return problems
+
+
+def _names(parts: object) -> list[tuple[int, str]]:
+    if not isinstance(parts, list):
+        return []
+    named = [(index, part.get("name")) for index, part in enumerate(parts) if isinstance(part, dict)]
+    return [(index, name) for index, name in named if isinstance(name, str) and name.strip()]
+
+
+def _default_name(data: dict[str, object], name: str) -> list[Problem]:
+    """A problem where the recipe takes its name from a file whose name cannot be a folder's."""
+    if "name" in data or folder_name_problem(name) is None:
+        return []
+    text = f'is missing, and {shown(name)} cannot be a folder\'s name; add "name": "{folder_name(name)}"'
+    return [Problem("name", text)]
+
+
+def _limited(problems: list[Problem]) -> tuple[Problem, ...]:
+    if len(problems) <= MOST_PROBLEMS:
+        return tuple(problems)
+    rest = Problem(TOP, f"has {len(problems) - MOST_PROBLEMS} more problems; mend these first")
+    return (*problems[:MOST_PROBLEMS], rest)

@@ -1,0 +1,47 @@
+"""A Recipe becomes JSON data again: the recipe as it was understood."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from foldfab.geometry.arrays import Array
+from foldfab.recipe.model import Part, PrintOptions, Recipe
+
+
+def to_json(recipe: Recipe) -> dict[str, Any]:
+    """JSON data with every part a named box and all defaults filled in; parsing it gives the same recipe."""
+    return {
+        "name": recipe.name,
+        "about": recipe.about,
+        "units": "mm",
+        "direction": "auto" if recipe.direction is None else _floats(recipe.direction),
+        "parts": [_part(part) for part in recipe.parts],
+        "fold": {
+            "alpha": recipe.fold.alpha,
+            "max_hinges": recipe.fold.max_hinges,
+            "shrink_steps": recipe.fold.shrink_steps,
+            "slanting": recipe.fold.slanting,
+            "stay_in_box": recipe.fold.stay_in_box,
+        },
+        "print": _print(recipe.print),
+    }
+
+
+def _part(part: Part) -> dict[str, Any]:
+    box = {"center": _floats(part.center), "size": _floats(part.size), "axes": [_floats(row) for row in part.axes]}
+    return {"name": part.name, "box": box, "hingeable": part.hingeable}
+
+
+def _print(options: PrintOptions) -> dict[str, Any]:
+    return {
+        "printer": {"name": options.printer.name, "build_volume": list(options.printer.build_volume)},
+        "thickness": options.thickness,
+        "clearance": options.clearance,
+        "posture": options.posture,
+        "scale": "fit" if options.scale is None else options.scale,
+    }
+
+
+def _floats(vector: Array) -> list[float]:
+    """Without negative zeros, which read badly."""
+    return [float(entry) + 0.0 for entry in vector]

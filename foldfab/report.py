@@ -1,0 +1,206 @@
+"""What the command line says about a fold and a print: pure functions from items to text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from foldfab.fabrication.model import Assembly
+from foldfab.folding.model import FoldSolution, Modification
+from foldfab.geometry.arrays import Array
+
+WINDOW = 1e-9
+"""How far a window may be from [0, 1] and still be the whole width."""
+LAYERS = 20
+"""A panel is printed in at least that many layers."""
+COLUMNS = ("step", "part", "fold", "hinges", "width kept", "cost", "why")
+
+
+def summary(assembly: Assembly, folder: Path) -> str:
+    """What a maker wants to know about a print: what was changed and why, its sizes, and how to print it."""
+    blocks = [_headline(assembly), _changes(assembly.solution), _figures(assembly), _printing(assembly)]
+    blocks += [_findings(assembly), f"Written to {folder}"]
+    return "\n\n".join(block for block in blocks if block)
+
+
+def fold_table(solution: FoldSolution, milliseconds: float) -> str:
+    """What is changed in each patch, in folding order, and at which cost."""
+    rows = [COLUMNS] + [
+        (str(number), *_cells(solution.modification(patch)))
+        for number, step in enumerate(solution.steps, 1)
+        for patch in step.patches
+    ]
+    scaffold = solution.scaffold
+    total = (
+        f"{scaffold.recipe.name} folds along {_vector(scaffold.direction)}: {_count(len(solution.steps), 'unit')}, "
+        f"{_count(len(scaffold.patches), 'foldable patch')}, cost {solution.cost:.4f} "
+        f"(no less than {solution.lower_bound:.4f}), solved in {milliseconds:.0f} ms"
+    )
+    return "\n".join([total, "", *_aligned(rows), *_notes(solution)])
+
+
+def fold_facts(solution: FoldSolution, milliseconds: float) -> dict[str, Any]:
+    """The same as JSON data, for programs."""
+    return {
+        "status": "folded",
+        "reason": "",
+        "name": solution.scaffold.recipe.name,
+        "direction": [float(entry) + 0.0 for entry in solution.scaffold.direction],
+        "scale": float(solution.scaffold.scale),
+        "units": len(solution.steps),
+        "foldable_patches": len(solution.scaffold.patches),
+        "cost": float(solution.cost),
+        "lower_bound": float(solution.lower_bound),
+        "milliseconds": round(milliseconds, 3),
+        "order": [{"unit": step.unit, "patches": list(step.patches)} for step in solution.steps],
+        "modifications": [_modification(modification) for modification in solution.modifications],
+        "notes": list(solution.notes),
+    }
+
+
+def refused_facts(reason: str) -> dict[str, Any]:
+    """The JSON data of furniture that cannot be folded."""
+    return {"status": "refused", "reason": reason}
+
+
+def change(modification: Modification) -> str:
+    """One sentence on what is done to a patch; empty where nothing is."""
+    low, high = modification.window
+    done = []
+    if modification.is_deleted:
+        done.append("is taken away")
+    else:
+        if modification.hinges:
+            done.append(f"gets {_count(modification.hinges, 'hinge')}")
+        if high - low < 1 - WINDOW:
+            done.append(f"is narrowed to {100 * (high - low):.0f} % of its width")
+    return f"{modification.patch} {' and '.join(done)} {modification.reason}".strip() if done else ""
+
+
+def sizes(assembly: Assembly) -> tuple[Array, Array]:
+    """(3,), (3,) mm: width, depth and height of the print along the recipe's axes, open and folded."""
+    return _extent(assembly, 0), _extent(assembly, -1)
+
+
+def _extent(assembly: Assembly, key: int) -> Array:
+    poses = {body.name: assembly.poses[body.name][key] for body in assembly.bodies}
+    moved = [body.vertices @ poses[body.name][:3, :3].T + poses[body.name][:3, 3] for body in assembly.bodies]
+    # The scaffold turned the recipe by `rotation`; rows times the matrix turn it back.
+    return np.asarray(np.ptp(np.vstack(moved) @ assembly.solution.scaffold.rotation, axis=0))
+
+
+def _headline(assembly: Assembly) -> str:
+    recipe = assembly.solution.scaffold.recipe
+    way = _vector(assembly.solution.scaffold.direction)
+    title = f"{recipe.name}: folds flat along {way} in {_count(len(assembly.solution.steps), 'step')}"
+    return "\n".join([title, recipe.about]) if recipe.about else title
+
+
+def _changes(solution: FoldSolution) -> str:
+    told = [text for text in map(change, solution.modifications) if text]
+    unchanged = len(solution.modifications) - len(told)
+    if unchanged:
+        told.append(f"{_count(unchanged, 'other foldable patch' if told else 'foldable patch')} unchanged")
+    return "\n".join(["What was changed", *(f"  {text}" for text in told)])
+
+
+def _figures(assembly: Assembly) -> str:
+    opened, folded = sizes(assembly)
+    inserted = sum(joint.is_inserted for joint in assembly.joints)
+    scale = assembly.solution.scaffold.scale
+    rows = [
+        ("open", _size(opened)),
+        ("folded", _size(folded)),
+        ("space saving", f"{100 * (1 - folded.prod() / opened.prod()):.1f} %"),
+        ("hinges", f"{inserted} inserted, {len(assembly.joints) - inserted} at bases"),
+        ("printed bodies", str(len(assembly.bodies))),
+        ("scale", f"1:{1 / scale:.3g}" if scale <= 1 else f"{scale:.3g}:1"),
+        ("cost", f"{assembly.solution.cost:.4f}, no less than {assembly.solution.lower_bound:.4f}"),
+    ]
+    return "\n".join(["What it is", *(f"  {line}" for line in _aligned(rows))])
+
+
+def _printing(assembly: Assembly) -> str:
+    printer = assembly.solution.scaffold.recipe.print.printer
+    thickness = assembly.solution.thickness
+    volume = " × ".join(f"{side:g}" for side in printer.build_volume)
+    lines = [
+        f"printer {printer.name} ({volume} mm), posture {assembly.posture}, in one piece",
+        f"plates are {thickness.panel:g} mm thick: use layers of {thickness.panel / LAYERS:.2g} mm or less",
+        f"hinges are printed with {thickness.gap:g} mm of clearance: allow no supports in the gaps",
+        *_after(assembly),
+    ]
+    return "\n".join(["How to print it", *(f"  {line}" for line in lines)])
+
+
+def _after(assembly: Assembly) -> list[str]:
+    """How to treat the print once it is off the bed."""
+    order = "; then ".join(", ".join(step.patches) for step in assembly.solution.steps)
+    if assembly.posture == "folded":
+        return ["it lies flat on the bed; unfold it in the reverse of this order", f"fold in this order: {order}"]
+    return ["give supports from the bed only, and loosen every hinge gently once", f"fold in this order: {order}"]
+
+
+def _findings(assembly: Assembly) -> str:
+    notes = [f"  {finding.text}" for finding in assembly.findings]
+    return "\n".join(["Worth knowing", *notes]) if notes else ""
+
+
+def _notes(solution: FoldSolution) -> list[str]:
+    return ["", *(f"note: {note}" for note in solution.notes)] if solution.notes else []
+
+
+def _modification(modification: Modification) -> dict[str, Any]:
+    return {
+        "patch": modification.patch,
+        "mechanism": modification.mechanism,
+        "hinges": int(modification.hinges),
+        "side": modification.side,
+        "window": [float(edge) for edge in modification.window],
+        "importance": float(modification.importance),
+        "cost": float(modification.cost),
+        "reason": modification.reason,
+    }
+
+
+def _cells(modification: Modification) -> tuple[str, ...]:
+    low, high = modification.window
+    side = {"l": ", left", "r": ", right", None: ""}[modification.side]
+    kept = f"{100 * (high - low):.0f} %"
+    cost = f"{modification.cost:.4f}"
+    return (
+        modification.patch,
+        modification.mechanism + side,
+        str(modification.hinges),
+        kept,
+        cost,
+        modification.reason,
+    )
+
+
+def _aligned(rows: Iterable[Sequence[str]]) -> list[str]:
+    """Rows of cells as lines, every column but the last padded to its widest cell."""
+    cells = [tuple(row) for row in rows]
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in cells]
+
+
+def _size(extent: Array) -> str:
+    return " × ".join(f"{side:.1f}" for side in extent) + " mm"
+
+
+def _vector(direction: Array) -> str:
+    """A folding direction as it is written in a recipe."""
+    for index, axis in enumerate("xyz"):
+        if abs(direction[index]) > 1 - 1e-12:
+            return axis if direction[index] > 0 else f"-{axis}"
+    return "[" + ", ".join(f"{entry:.3g}" for entry in direction) + "]"
+
+
+def _count(number: int, noun: str) -> str:
+    """`1 hinge`, `2 hinges`, `3 patches`."""
+    plural = f"{noun}es" if noun.endswith("ch") else f"{noun}s"
+    return f"{number} {noun if number == 1 else plural}"

@@ -1,0 +1,1 @@
+"""A Recipe becomes a Scaffold (section 5.1)."""

@@ -1,0 +1,85 @@
+"""The verb of this room: a Recipe becomes a Scaffold along a folding direction (section 5.1)."""
+
+from __future__ import annotations
+
+import networkx as nx
+import numpy as np
+
+from foldfab.errors import AbstractionError
+from foldfab.geometry.arrays import Array
+from foldfab.geometry.boxes import close_pairs, grown
+from foldfab.geometry.rotation import upright
+from foldfab.recipe.model import Recipe
+from foldfab.scaffold import segments as seg
+from foldfab.scaffold.bases import find_bases
+from foldfab.scaffold.model import Scaffold
+from foldfab.scaffold.segments import Segment
+from foldfab.scaffold.sheets import sheets
+from foldfab.scaffold.split import cut
+
+TOUCH_SHARE = 0.02
+"""Parts touch where they are closer than this share of the parts' median longest side; tied to the parts and not to
+the whole, so that a composite is abstracted like its cells."""
+STUB_THICKNESSES = 2.5
+"""A piece shorter than this many panel thicknesses is too short to carry a hinge at each end."""
+
+
+def abstract(recipe: Recipe, direction: Array, scale: float) -> Scaffold:
+    """The scaffold of a recipe along the unit `direction` (3,), at print `scale` (print size over true size).
+
+    Raises:
+        AbstractionError: the parts do not hang together, nothing is perpendicular to d, or a part that folds
+            touches no base.
+    """
+    parts = seg.segments(recipe, direction, scale)
+    thickness, gap = recipe.print.thickness, recipe.print.clearance
+    tolerance = TOUCH_SHARE * float(np.median([2 * s.half.max() for s in parts]))
+    _require_connected(parts, tolerance)
+    leaves = sheets(tuple(s for s in parts if not s.is_base), thickness + gap)
+    stub = STUB_THICKNESSES * thickness
+    layout = find_bases(tuple(s for s in parts if s.is_base), leaves, tolerance, stub)
+    if not layout.bases:
+        raise AbstractionError(
+            "no part and no joint of parts is perpendicular to the folding direction, so there is no base"
+        )
+    patches, notes = cut(leaves, layout, stub)
+    _require_attached(recipe, patches, parts, layout.bases)
+    _require_one_piece(patches, layout.bases)
+    return Scaffold(recipe, direction, upright(direction), scale, layout.bases, patches, notes)
+
+
+def _require_connected(parts: tuple[Segment, ...], tolerance: float) -> None:
+    solids = grown(seg.as_boxes(parts), tolerance / 2)
+    graph: nx.Graph[int] = nx.Graph()
+    graph.add_nodes_from(range(len(parts)))
+    graph.add_edges_from((int(i), int(j)) for i, j in zip(*close_pairs(solids, solids), strict=True))
+    groups = sorted(nx.connected_components(graph), key=lambda g: (-len(g), min(g)))
+    if len(groups) > 1:
+        names = tuple(parts[i].name for i in sorted(groups[1]))
+        raise AbstractionError(
+            f"{_listed(names)} do{'es' if len(names) == 1 else ''} not touch the rest (no part is within "
+            f"{tolerance / 2:.2g} mm at print scale); move the parts together",
+            names,
+        )
+
+
+def _require_attached(recipe: Recipe, patches: tuple, parts: tuple[Segment, ...], bases: tuple) -> None:  # type: ignore[type-arg]
+    held = {p for patch in patches if patch.bases for p in patch.parts} | {p for base in bases for p in base.parts}
+    loose = tuple(s.name for s in parts if s.name not in held)
+    if loose:
+        raise AbstractionError(f"{_listed(loose)} would fold but touch{'es' if len(loose) == 1 else ''} no base", loose)
+
+
+def _require_one_piece(patches: tuple, bases: tuple) -> None:  # type: ignore[type-arg]
+    graph: nx.Graph[str] = nx.Graph()
+    graph.add_nodes_from(base.name for base in bases)
+    graph.add_edges_from(patch.bases for patch in patches if len(patch.bases) == 2)
+    groups = sorted(nx.connected_components(graph), key=lambda g: (-len(g), min(g)))
+    if len(groups) > 1:
+        names = tuple(sorted(groups[1]))
+        raise AbstractionError(f"the base of {_listed(names)} is held by nothing that folds", names)
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    shown = ", ".join(names[:5])
+    return shown if len(names) <= 5 else f"{shown} and {len(names) - 5} more"

@@ -1,0 +1,82 @@
+"""Values from the command line."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from foldfab.errors import RecipeError
+from foldfab.recipe.edit import override
+from foldfab.recipe.read import parse
+
+RECIPE = parse({"parts": [{"name": "a", "box": {"center": [0, 0, 0], "size": [1, 1, 1]}}]}, "a.json", "a")
+
+
+def test_nothing_given_changes_nothing() -> None:
+    same = override(RECIPE)
+    assert (same.direction, same.fold, same.print) == (RECIPE.direction, RECIPE.fold, RECIPE.print)
+
+
+def test_text_becomes_values() -> None:
+    recipe = override(
+        RECIPE,
+        direction="0,0,-2",
+        printer="200x200x180",
+        scale="1:5",
+        clearance="0.25",
+        thickness="3",
+        posture="folded",
+        alpha="1",
+        max_hinges="5",
+        shrink_steps="4",
+        slanting=False,
+        stay_in_box=True,
+    )
+    assert recipe.direction == pytest.approx([0, 0, -1])
+    assert recipe.print.printer.build_volume == (200, 200, 180)
+    assert (recipe.print.scale, recipe.print.clearance, recipe.print.thickness) == (0.2, 0.25, 3.0)
+    assert (recipe.fold.alpha, recipe.fold.max_hinges, recipe.fold.shrink_steps) == (1.0, 5, 4)
+    assert (recipe.fold.slanting, recipe.fold.stay_in_box, recipe.print.posture) == (False, True, "folded")
+
+
+def test_back_to_fit_and_auto() -> None:
+    fixed = override(RECIPE, scale=0.5, direction="-x")
+    assert fixed.direction == pytest.approx([-1, 0, 0])
+    free = override(fixed, scale="fit", direction="auto")
+    assert (free.print.scale, free.direction) == (None, None)
+
+
+@pytest.mark.parametrize(
+    ("values", "place", "words"),
+    [
+        ({"alpha": "2"}, "--alpha", "from 0 to 1"),
+        ({"alpha": "much"}, "--alpha", "'much'"),
+        ({"alpha": "nan"}, "--alpha", "NaN"),
+        ({"max_hinges": "2.5"}, "--max-hinges", "whole number"),
+        ({"shrink_steps": 0}, "--shrink-steps", "from 1 to 20"),
+        ({"thickness": "0"}, "--thickness", "from 1 to 20"),
+        ({"clearance": "5"}, "--clearance", "0.1 to 1"),
+        ({"posture": "edge"}, "--posture", "folded"),
+        ({"printer": "mk9"}, "--printer", "prusa-mk4"),
+        ({"printer": "1x1x1"}, "--printer", "sides"),
+        ({"scale": "1:0"}, "--scale", "fit"),
+        ({"scale": "-1"}, "--scale", "number"),
+        ({"direction": "0,0,0"}, "--direction", "zero"),
+        ({"direction": "down"}, "--direction", '"-z"'),
+        ({"direction": "1,a,0"}, "--direction", "'a'"),
+        ({"direction": "1,0"}, "--direction", "three numbers"),
+    ],
+)
+def test_says_which_option_is_wrong(values: dict[str, Any], place: str, words: str) -> None:
+    with pytest.raises(RecipeError) as caught:
+        override(RECIPE, **values)
+    (problem,) = caught.value.problems
+    assert problem.place == place
+    assert words in problem.text
+
+
+def test_all_wrong_options_at_once() -> None:
+    with pytest.raises(RecipeError) as caught:
+        override(RECIPE, alpha=3, thickness=0, printer="none")
+    assert [problem.place for problem in caught.value.problems] == ["--alpha", "--thickness", "--printer"]

@@ -1,0 +1,214 @@
+"""Exit statuses, and what goes where."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import time
+import types
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import foldfab
+from foldfab import cli, report
+from foldfab.errors import FoldingError, Problem, RecipeError
+from foldfab.fabrication.model import Finding
+
+WRONG = RecipeError("bench.json", (Problem("parts", "is missing"),))
+
+
+class Pipeline(types.ModuleType):
+    """A pipeline that remembers its calls; what it should raise or return is set by name."""
+
+    def __init__(self) -> None:
+        super().__init__("foldfab.pipeline")
+        self.calls: list[tuple[Any, ...]] = []
+        self.fails: dict[str, BaseException] = {}
+        self.findings: tuple[Finding, ...] = ()
+        self.rows: tuple[Any, ...] = ()
+        for name in ("load", "foldabilize", "fabricate", "write", "check", "shipped"):
+            setattr(self, name, self._verb(name))
+
+    def _verb(self, name: str) -> Any:
+        def verb(*arguments: Any, **options: Any) -> Any:
+            self.calls.append((name, arguments, options))
+            if name in self.fails:
+                raise self.fails[name]
+            return self._result(name)
+
+        return verb
+
+    def _result(self, name: str) -> Any:
+        return {
+            "load": types.SimpleNamespace(name="bench", about="A bench."),
+            "fabricate": types.SimpleNamespace(findings=self.findings),
+            "check": types.SimpleNamespace(rows=self.rows, ok=all(row.ok for row in self.rows)),
+            "shipped": (Path("bench.json"),),
+        }.get(name)
+
+    def names(self) -> list[str]:
+        """The verbs that were called, in order."""
+        return [call[0] for call in self.calls]
+
+
+@pytest.fixture
+def pipeline(monkeypatch: pytest.MonkeyPatch) -> Pipeline:
+    """The pipeline that the command line finds, and reports of one line."""
+    fake = Pipeline()
+    monkeypatch.setitem(sys.modules, "foldfab.pipeline", fake)
+    monkeypatch.setattr(foldfab, "pipeline", fake, raising=False)
+    monkeypatch.setattr(report, "summary", lambda assembly, folder: f"summary of {folder}")
+    monkeypatch.setattr(report, "fold_table", lambda solution, milliseconds: "table")
+    monkeypatch.setattr(report, "fold_facts", lambda solution, milliseconds: {"status": "folded"})
+    return fake
+
+
+def row(code: str, ok: bool) -> Any:
+    """A checked thing."""
+    return types.SimpleNamespace(code=code, ok=ok, text=f"{code} was looked at")
+
+
+def test_print_walks_the_corridor(pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["print", "bench", "-o", "out"]) == 0
+    assert pipeline.names() == ["load", "foldabilize", "fabricate", "write"]
+    assert pipeline.calls[-1][1][1] == Path("out/bench")
+    assert capsys.readouterr() == (f"summary of {Path('out/bench')}\n", "")
+
+
+def test_quiet(pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["print", "bench", "-q"]) == 0
+    assert capsys.readouterr() == ("", "")
+
+
+def test_only_given_options_override(pipeline: Pipeline) -> None:
+    cli.main(["fold", "bench"])
+    assert pipeline.calls[0] == ("load", ("bench",), {})
+
+
+def test_all_options(pipeline: Pipeline) -> None:
+    line = "fold bench --direction -z --posture folded --printer ender-3 --scale 1:5 --clearance 0.2 --thickness 3"
+    more = "--alpha 0.1 --max-hinges 5 --shrink-steps 4 --no-slanting --stay-in-box"
+    assert cli.main([*line.split(), *more.split()]) == 0
+    assert pipeline.calls[0][2] == {
+        "direction": "-z",
+        "posture": "folded",
+        "printer": "ender-3",
+        "scale": "1:5",
+        "clearance": "0.2",
+        "thickness": "3",
+        "alpha": "0.1",
+        "max_hinges": "5",
+        "shrink_steps": "4",
+        "slanting": False,
+        "stay_in_box": True,
+    }
+
+
+def test_fold(pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["fold", "bench"]) == 0
+    assert cli.main(["fold", "bench", "--json"]) == 0
+    assert capsys.readouterr().out == 'table\n{\n "status": "folded"\n}\n'
+
+
+def test_refused(pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None:
+    pipeline.fails["foldabilize"] = FoldingError("seat cannot fold")
+    assert cli.main(["fold", "bench"]) == 1
+    assert capsys.readouterr() == ("", "foldfab: seat cannot fold\n")
+    assert cli.main(["fold", "bench", "--json"]) == 1
+    assert json.loads(capsys.readouterr().out) == {"status": "refused", "reason": "seat cannot fold"}
+
+
+@pytest.mark.parametrize("command", [["print", "bench"], ["fold", "bench"], ["fold", "bench", "--json"]])
+def test_bad_input(command: list[str], pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None:
+    pipeline.fails["load"] = WRONG
+    assert cli.main(command) == 2
+    assert capsys.readouterr() == ("", "foldfab: bench.json: 1 problem\n  parts: is missing\n")
+    assert pipeline.names() == ["load"]
+
+
+def test_a_fatal_finding_stops_the_print(pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None:
+    pipeline.findings = (Finding("clash", "seat meets back", is_fatal=True),)
+    assert cli.main(["print", "bench"]) == 1
+    assert "seat meets back" in capsys.readouterr().err
+    assert "write" not in pipeline.names()
+
+
+@pytest.mark.parametrize(("rows", "status"), [((("stl", True),), 0), ((("stl", True), ("gap", False)), 1)])
+def test_check(
+    rows: tuple[tuple[str, bool], ...], status: int, pipeline: Pipeline, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pipeline.rows = tuple(row(code, ok) for code, ok in rows)
+    assert cli.main(["check", "prints/bench"]) == status
+    assert ("FAIL" in capsys.readouterr().out) == bool(status)
+    assert cli.main(["check", "prints/bench", "--json"]) == status
+    facts = json.loads(capsys.readouterr().out)
+    assert [check["ok"] for check in facts["checks"]] == [ok for _, ok in rows]
+
+
+def test_recipes(pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["recipes"]) == 0
+    assert capsys.readouterr().out == "bench  A bench.\n"
+
+
+@pytest.mark.parametrize(
+    ("error", "status", "words"),
+    [
+        (KeyboardInterrupt(), 130, "interrupted"),
+        (ZeroDivisionError("oh\nno"), 70, "a bug in foldfab (ZeroDivisionError: oh no)"),
+        (OSError(28, "No space left on device", "prints/bench"), 2, "prints/bench: No space left on device"),
+        (PermissionError(13, "Permission denied", "prints"), 2, "may you write there"),
+    ],
+)
+def test_one_line_for_what_goes_wrong(
+    error: BaseException, status: int, words: str, pipeline: Pipeline, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pipeline.fails["write"] = error
+    assert cli.main(["print", "bench"]) == status
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert words in err
+    assert err.count("\n") == 1
+
+
+def test_traceback_on_request(
+    pipeline: Pipeline, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("FOLDFAB_DEBUG", "1")
+    pipeline.fails["load"] = ZeroDivisionError()
+    assert cli.main(["fold", "bench"]) == 70
+    assert "Traceback" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("argv", [[], ["fold"], ["saw", "bench"], ["fold", "bench", "--alph", "1"], ["check"]])
+def test_usage_errors(argv: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(argv) == 2
+    assert "usage" in capsys.readouterr().err
+
+
+def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["--version"]) == 0
+    assert cli.main(["--help"]) == 0
+    assert capsys.readouterr().out.startswith("foldfab ")
+
+
+def test_progress_only_on_a_terminal(
+    pipeline: Pipeline, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    cli.main(["print", "bench"])
+    assert "building the solids" in capsys.readouterr().err
+    cli.main(["print", "bench", "-q"])
+    assert capsys.readouterr().err == ""
+
+
+def test_help_is_fast_and_a_closed_pipe_is_quiet() -> None:
+    start = time.perf_counter()
+    run = subprocess.run([sys.executable, "-m", "foldfab.cli", "--help"], capture_output=True, text=True, check=True)
+    assert time.perf_counter() - start < 0.5
+    assert "print" in run.stdout
+    closed = f"{sys.executable} -m foldfab.cli print --help | true"
+    piped = subprocess.run(closed, shell=True, capture_output=True, text=True, check=True)
+    assert piped.stderr == ""

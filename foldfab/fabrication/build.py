@@ -63,7 +63,7 @@ def _solids(solution: FoldSolution) -> tuple[dict[str, Solid], list[Finding]]:
             )
     for chain in solution.chains:
         made.update(zip(chain.panels, panels(chain, solution.thickness), strict=True))
-    return made, findings
+    return {name: solids.tidied(body) for name, body in made.items()}, findings
 
 
 def _body(solution: FoldSolution, name: str, solid: Solid) -> Body:

@@ -22,6 +22,9 @@ Solid: TypeAlias = Manifold
 SIDES = 32
 """Sides of the polygon that stands for a circle."""
 
+SLIVER = 1e-3
+"""Detail below this is rounding, mm."""
+
 
 def box(low: Iterable[float], high: Iterable[float]) -> Solid:
     """The axis-aligned box between two corners (3,)."""
@@ -74,6 +77,11 @@ def hull(parts: list[Solid]) -> Solid:
     return checked(Manifold.batch_hull(parts))
 
 
+def tidied(body: Solid) -> Solid:
+    """The body without the slivers that booleans of coplanar faces leave, which 32-bit files would pinch shut."""
+    return checked(body.simplify(SLIVER))
+
+
 def pieces(body: Solid) -> int:
     """How many separate bodies it is."""
     return sum(1 for part in body.decompose() if part.volume() > 0)
@@ -96,7 +104,7 @@ def bounds(body: Solid) -> tuple[Array, Array]:
 
 
 def mesh(body: Solid) -> tuple[Array, Indices]:
-    """Vertices (n, 3) and triangles (m, 3), without slivers that vanish when written with six decimals."""
+    """Vertices (n, 3) and triangles (m, 3)."""
     raw = checked(body).to_mesh64()
     return np.array(raw.vert_properties[:, :3], dtype=np.float64), np.array(raw.tri_verts, dtype=np.int64)
 

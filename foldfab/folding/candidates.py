@@ -23,7 +23,7 @@ from foldfab.folding.site import Site
 from foldfab.folding.space import Sweep, blocked, sweep, window_blocked
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Array, Bools
-from foldfab.geometry.boxes import Boxes, bounds, grown, stacked
+from foldfab.geometry.boxes import Boxes, bounds, grown, moved, stacked
 from foldfab.recipe.model import FoldOptions
 from foldfab.scaffold.model import Scaffold
 
@@ -113,12 +113,15 @@ def candidates(problem: Problem, unit: Unit, around: Surroundings, *, in_place: 
     return found
 
 
-def options(problem: Problem, site: Site, many: list[Candidate]) -> list[tuple[Option, float]]:
-    """The options of a patch, deletion last, each with what it counts in the search: its cost plus preferences."""
+def options(problem: Problem, site: Site, many: list[Candidate], offset: Array) -> list[tuple[Option, float]]:
+    """The options of a patch, deletion last, each with what it counts in the search: its cost plus preferences.
+
+    `offset` (3,) is how far the unit has been carried already.
+    """
     made: list[tuple[Option, float]] = []
     steps = problem.options.shrink_steps
     for candidate in many:
-        extra = PREFERENCE * _awkwardness(problem, candidate)
+        extra = PREFERENCE * _awkwardness(problem, candidate, offset)
         for window in basic.windows(steps):
             if window_blocked(candidate.blocked, window):
                 continue
@@ -314,10 +317,14 @@ def _leaves_box(problem: Problem, variant: Variant, swept: Sweep) -> bool:
     return bool(((swept.low < problem.low - slack) | (swept.high > problem.high + slack)).any())
 
 
-def _awkwardness(problem: Problem, candidate: Candidate) -> float:
-    """How far a candidate sticks out of the open furniture and how high its plinths are, relative to its size."""
+def _awkwardness(problem: Problem, candidate: Candidate, offset: Array) -> float:
+    """How far a candidate carries things out of the open furniture and how high its plinths are, relative to its size."""
     size = float(np.linalg.norm(problem.high - problem.low))
-    out = np.maximum(problem.low - candidate.sweep.low.min((0, 1)), 0) + np.maximum(
-        candidate.sweep.high.max((0, 1)) - problem.high, 0
-    )
+    low, high = candidate.sweep.low.min((0, 1)), candidate.sweep.high.max((0, 1))
+    if candidate.chain.far is not None:
+        plate = anatomy.base_boxes(problem.scaffold.base(candidate.chain.far), problem.thickness)
+        ends = reach(candidate.chain, np.array([0.0, 1.0])) @ np.stack([candidate.chain.across, candidate.chain.rise])
+        corners = bounds(moved(plate, ends[1] - ends[0]))
+        low, high = np.minimum(low, corners[0].min(0)), np.maximum(high, corners[1].max(0))
+    out = np.maximum(problem.low - low - offset, 0) + np.maximum(high + offset - problem.high, 0)
     return float(out.sum() + 2 * sum(candidate.variant.pads)) / size

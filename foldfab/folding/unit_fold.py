@@ -75,7 +75,8 @@ def fold_unit(problem: Problem, scene: Scene, unit: Unit, *, in_place: bool = Fa
     if standing:
         return Refusal(unit, f"{standing} stands in the way unfolded")
     found = candidates(problem, unit, around, in_place=in_place)
-    priced = {p: options(problem, problem.sites[p], found[p]) for p in unit.patches}
+    offset = scene.offset[unit.bases[0]]
+    priced = {p: options(problem, problem.sites[p], found[p], offset) for p in unit.patches}
     costs = [np.array([cost for _, cost in priced[p]]) for p in unit.patches]
     table = _tables(problem, unit, found, priced)
     forbidden: set[tuple[tuple[int, int], ...]] = set()

@@ -100,8 +100,12 @@ def make_recipe(
     name = what if isinstance(what, str) else "parts"
     parts = FURNITURE[what] if isinstance(what, str) else what
     along = np.array(DIRECTION.get(name, (0.0, 0.0, -1.0)) if direction is None else direction)
-    paper = PrintOptions(Printer("any", (500.0, 500.0, 500.0)), thickness=thickness, clearance=clearance, scale=1.0) if 0 else PrintOptions(
-        printer=Printer("any", (500.0, 500.0, 500.0)), thickness=thickness, clearance=clearance, scale=1.0
+    paper = (
+        PrintOptions(Printer("any", (500.0, 500.0, 500.0)), thickness=thickness, clearance=clearance, scale=1.0)
+        if 0
+        else PrintOptions(
+            printer=Printer("any", (500.0, 500.0, 500.0)), thickness=thickness, clearance=clearance, scale=1.0
+        )
     )
     return Recipe(name, along, parts, FoldOptions(**fold), paper)
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -56,6 +57,12 @@ class Problem:
     """Sweeps that were made already, by unit, patch and variant."""
     pairs: dict[tuple[str, str, Variant, str, Variant], Bools] = field(default_factory=dict)
     """Piece conflicts that were found already."""
+    forms: dict[tuple[str, bool], tuple[Variant, ...]] = field(default_factory=dict)
+    """Variants of each patch, with and without slanting."""
+    room: dict[str, dict[str, tuple[Array, Array]]] = field(default_factory=dict)
+    """By unit and base, the bounds of all its sweeps as seen from that base."""
+    solved: dict[object, Any] = field(default_factory=dict)
+    """Solutions of units, by all that they depend on."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -103,7 +110,7 @@ def candidates(problem: Problem, unit: Unit, around: Surroundings, *, in_place: 
     for patch in unit.patches:
         site = problem.sites[patch]
         found[patch] = []
-        for variant in basic.variants(site, problem.options, problem.thickness, may_slant=may_slant):
+        for variant in variants(problem, site, may_slant=may_slant):
             first = _candidate(problem, unit, around, site, variant)
             if first is None:
                 continue
@@ -111,6 +118,39 @@ def candidates(problem: Problem, unit: Unit, around: Surroundings, *, in_place: 
             raised = _raised(problem, unit, around, site, first) if first.blocked.any() else None
             found[patch] += [raised] if raised is not None else []
     return found
+
+
+def variants(problem: Problem, site: Site, *, may_slant: bool) -> tuple[Variant, ...]:
+    """The variants of a patch without plinths, found once."""
+    key = (site.patch.name, may_slant)
+    if key not in problem.forms:
+        problem.forms[key] = basic.variants(site, problem.options, problem.thickness, may_slant=may_slant)
+    return problem.forms[key]
+
+
+def seen_from(problem: Problem, unit: Unit) -> dict[str, tuple[Array, Array]]:
+    """By base of the unit, lower and upper corner (3,) of everything its chains sweep, relative to that base."""
+    if unit.name not in problem.room:
+        down, found = _nominal(problem, unit), {}
+        for base in unit.bases:
+            corners = []
+            for patch in unit.patches:
+                site = problem.sites[patch]
+                for variant in variants(problem, site, may_slant=is_slantable(problem, unit)):
+                    made = _swept(problem, unit, site, variant)
+                    if made is not None:
+                        corners.append(_relative(made, base, down))
+            low = np.min([c[0] for c in corners], axis=0) if corners else np.full(3, np.inf)
+            high = np.max([c[1] for c in corners], axis=0) if corners else np.full(3, -np.inf)
+            found[base] = (low, high)
+        problem.room[unit.name] = found
+    return problem.room[unit.name]
+
+
+def _relative(made: tuple[Chain, Sweep, Array], base: str, down: Mapping[str, Array]) -> tuple[Array, Array]:
+    chain, swept, far = made
+    shift = far if base == chain.far else np.stack([0 * down[base], 0 * down[base], down[base]], axis=1)
+    return (swept.low - shift[:, None]).min((0, 1)), (swept.high - shift[:, None]).max((0, 1))
 
 
 def options(problem: Problem, site: Site, many: list[Candidate], offset: Array) -> list[tuple[Option, float]]:
@@ -318,7 +358,7 @@ def _leaves_box(problem: Problem, variant: Variant, swept: Sweep) -> bool:
 
 
 def _awkwardness(problem: Problem, candidate: Candidate, offset: Array) -> float:
-    """How far a candidate carries things out of the open furniture and how high its plinths are, relative to its size."""
+    """How far a candidate carries things out of the open furniture and how high its plinths are, relative."""
     size = float(np.linalg.norm(problem.high - problem.low))
     low, high = candidate.sweep.low.min((0, 1)), candidate.sweep.high.max((0, 1))
     if candidate.chain.far is not None:

@@ -48,6 +48,26 @@ def play_limit(chain: Chain, thickness: Thickness) -> float:
     return PLAY_SHARE * thickness.gap * (len(chain.lengths) + 1)
 
 
+def go_the_same_way(a: Chain, b: Chain) -> bool:
+    """Whether two chains drag their bases along the same way (condition ii of section 5.2)."""
+    if not _share_bases(a, b):
+        return True
+    if a.mechanism != b.mechanism:
+        return False
+    return a.mechanism == "in-place" or bool(np.abs(_way(a) - _way(b)).max() < SAME_PLACE)
+
+
+def snap_alike(a: Chain, b: Chain, thickness: Thickness) -> bool:
+    """Whether the play in their hinges covers the difference between the snaps of two chains."""
+    if not _share_bases(a, b) or a.mechanism != "in-place" or b.mechanism != "in-place":
+        return True
+    return abs(peak(a)[0] - peak(b)[0]) <= play_limit(a, thickness) + play_limit(b, thickness)
+
+
+def _share_bases(a: Chain, b: Chain) -> bool:
+    return a.far is not None and {a.anchor, a.far} == {b.anchor, b.far}
+
+
 def _by_variant(many: list[Option], place: dict[tuple[int, int], int]) -> dict[object, tuple[list[int], list[int]]]:
     """By variant, the positions of its options and of their windows."""
     found: dict[object, tuple[list[int], list[int]]] = {}
@@ -64,23 +84,11 @@ def _pair(problem: Problem, unit: str, a: Candidate, b: Candidate) -> Bools:
     key = (unit, a.chain.patch, a.variant, b.chain.patch, b.variant)
     if key not in problem.pairs:
         whole = windows(problem.options.shrink_steps)
-        if not _move_alike(problem, a, b):
+        if not go_the_same_way(a.chain, b.chain) or not snap_alike(a.chain, b.chain, problem.thickness):
             problem.pairs[key] = np.ones((len(whole), len(whole)), dtype=bool)
         else:
             problem.pairs[key] = window_conflicts(conflicts(a.sweep, b.sweep), whole)
     return problem.pairs[key]
-
-
-def _move_alike(problem: Problem, a: Candidate, b: Candidate) -> bool:
-    """Whether both can hold the same bases at every moment (condition ii of section 5.2)."""
-    if {a.chain.anchor, a.chain.far} != {b.chain.anchor, b.chain.far} or a.chain.far is None:
-        return True
-    if a.chain.mechanism != b.chain.mechanism:
-        return False
-    if a.chain.mechanism == "slanted":
-        return bool(np.abs(_way(a.chain) - _way(b.chain)).max() < SAME_PLACE)
-    apart = abs(peak(a.chain)[0] - peak(b.chain)[0])
-    return apart <= play_limit(a.chain, problem.thickness) + play_limit(b.chain, problem.thickness)
 
 
 def _way(chain: Chain) -> Array:

@@ -44,6 +44,9 @@ def greedy(problem: Problem, scene: Scene) -> Ordered:
         if not able:
             return _merged(problem, scene, rest, folds, [r for r in now.values() if isinstance(r, Refusal)])
         best = _best(problem, scene, able, rest, memory)
+        if any(o.variant is not None and o.variant.mechanism == "slanted" for o in best.chosen.values()):
+            final = fold_unit(problem, scene, best.unit, is_final=True)
+            best = final if isinstance(final, UnitFold) else best
         folds.append(best)
         scene = _after(scene, best)
         rest = [u for u in rest if u.name != best.unit.name]

@@ -24,7 +24,7 @@ SAME_LEVEL = 1e-6
 """Bases whose ways differ by less start together, mm."""
 SAMPLES = 48
 """Samples of each section of a unit's fold."""
-TABLE = 1025
+TABLE = 385
 """Samples of the table by which a chain's motion is inverted."""
 
 

@@ -7,7 +7,7 @@ falls into one *cluster* for each of the unit's bases, and each cluster only tra
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import networkx as nx
@@ -19,7 +19,7 @@ from foldfab.folding.site import Site, slab
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Array
 from foldfab.geometry.boxes import Boxes, moved, stacked
-from foldfab.scaffold.model import Scaffold
+from foldfab.scaffold.model import BasePatch, Scaffold
 
 State = Literal["base", "foot", "open", "folded"]
 
@@ -54,6 +54,8 @@ class Scene:
     """Names of the units that are folded."""
     history: frozenset[object] = frozenset()
     """What was chosen for each folded unit: two scenes with the same history are the same."""
+    shapes: dict[object, Boxes] = field(default_factory=dict)
+    """Boxes that were made already, by what they show, where they stand in the open furniture."""
 
 
 def open_scene(scaffold: Scaffold, thickness: Thickness, sites: Mapping[str, Site], units: tuple[Unit, ...]) -> Scene:
@@ -90,9 +92,8 @@ def clusters(scene: Scene, unit: Unit) -> dict[str, str]:
 
 def solids(scene: Scene, unit: Unit) -> list[Solid]:
     """Everything but the unit's own patches, where it is now."""
-    thick = scene.thickness
     found = [
-        Solid(base.name, "base", base.name, moved(anatomy.base_boxes(base, thick), scene.offset[base.name]))
+        Solid(base.name, "base", base.name, moved(_plate(scene, base), scene.offset[base.name]))
         for base in scene.scaffold.bases
     ]
     for other in scene.units:
@@ -104,16 +105,37 @@ def solids(scene: Scene, unit: Unit) -> list[Solid]:
 
 
 def _patch_solids(scene: Scene, patch: str, *, is_done: bool) -> list[Solid]:
-    site, thick = scene.sites[patch], scene.thickness
+    site = scene.sites[patch]
     if not is_done:
-        return [Solid(patch, "open", site.anchor, moved(slab(site, thick), scene.offset[site.anchor]))]
+        return [Solid(patch, "open", site.anchor, moved(_open(scene, site), scene.offset[site.anchor]))]
     if patch not in scene.chains:
         return []
     chain = scene.chains[patch]
-    flat = anatomy.moving_boxes(chain, thick, np.ones(1))[0]
-    shift = scene.offset[chain.anchor]
-    near = stacked([flat, anatomy.anchor_feet(chain, thick)])
-    found = [Solid(patch, "folded", chain.anchor, moved(near, shift))]
+    near, far = _folded(scene, chain)
+    found = [Solid(patch, "folded", chain.anchor, moved(near, scene.offset[chain.anchor]))]
     if chain.far is not None:
-        found.append(Solid(patch, "folded", chain.far, moved(anatomy.far_feet(chain, thick), scene.offset[chain.far])))
+        found.append(Solid(patch, "folded", chain.far, moved(far, scene.offset[chain.far])))
     return found
+
+
+def _plate(scene: Scene, base: BasePatch) -> Boxes:
+    if base not in scene.shapes:
+        scene.shapes[base] = anatomy.base_boxes(base, scene.thickness)
+    return scene.shapes[base]
+
+
+def _open(scene: Scene, site: Site) -> Boxes:
+    if site not in scene.shapes:
+        scene.shapes[site] = slab(site, scene.thickness)
+    return scene.shapes[site]
+
+
+def _folded(scene: Scene, chain: Chain) -> tuple[Boxes, Boxes]:
+    """A folded chain with its foot on the anchor, and its foot on the far base."""
+    near, far = (chain, "near"), (chain, "far")
+    if near not in scene.shapes:
+        thick = scene.thickness
+        flat = anatomy.moving_boxes(chain, thick, np.ones(1))[0]
+        scene.shapes[near] = stacked([flat, anatomy.anchor_feet(chain, thick)])
+        scene.shapes[far] = anatomy.far_feet(chain, thick)
+    return scene.shapes[near], scene.shapes[far]

@@ -8,7 +8,8 @@ import numpy as np
 
 from foldfab.errors import FoldingError
 from foldfab.folding import anatomy, basic
-from foldfab.folding.candidates import Problem, is_slantable
+from foldfab.folding.bound import lower_bound
+from foldfab.folding.candidates import Problem, is_slantable, variants
 from foldfab.folding.model import FoldSolution, Modification, Step, Thickness
 from foldfab.folding.ordering import Ordered, greedy, travel
 from foldfab.folding.scene import Scene, advanced, open_scene
@@ -53,7 +54,7 @@ def _require_variants(problem: Problem, units: tuple[Unit, ...]) -> None:
     for unit in units:
         for name in unit.patches:
             site = problem.sites[name]
-            if not basic.variants(site, problem.options, problem.thickness, may_slant=is_slantable(problem, unit)):
+            if not variants(problem, site, may_slant=is_slantable(problem, unit)):
                 short.append(f"{name} ({site.clear:.1f} mm between its bases)")
     if len(short) == sum(len(u.patches) for u in units):
         raise FoldingError(
@@ -74,10 +75,8 @@ def _solution(problem: Problem, scene: Scene, units: tuple[Unit, ...], ordered: 
     changed = [_modification(problem, fold, patch) for fold in ordered.folds for patch in fold.unit.patches]
     changed.sort(key=lambda m: m.patch)
     cost = sum(m.cost for m in changed)
-    return FoldSolution(
-        problem.scaffold, problem.thickness, chains, tuple(changed), steps, cost, min(_bound(problem, units), cost),
-        _notes(problem, ordered),
-    )  # fmt: skip
+    bound, notes = min(lower_bound(problem, units), cost), _notes(problem, ordered)
+    return FoldSolution(problem.scaffold, problem.thickness, chains, tuple(changed), steps, cost, bound, notes)
 
 
 def _steps(scene: Scene, folds: tuple[UnitFold, ...]) -> tuple[Step, ...]:
@@ -95,19 +94,6 @@ def _steps(scene: Scene, folds: tuple[UnitFold, ...]) -> tuple[Step, ...]:
 def _modification(problem: Problem, fold: UnitFold, patch: str) -> Modification:
     reason = fold.reasons.get(patch, "")
     return basic.modification(problem.sites[patch], fold.chosen[patch], problem.options, reason)
-
-
-def _bound(problem: Problem, units: tuple[Unit, ...]) -> float:
-    """Sum of each patch's cheapest option in isolation: no solution can be cheaper."""
-    total = 0.0
-    for unit in units:
-        may_slant = is_slantable(problem, unit)
-        for name in unit.patches:
-            site = problem.sites[name]
-            found = basic.variants(site, problem.options, problem.thickness, may_slant=may_slant)
-            prices = [basic.cost(v.hinges, 1.0, problem.options) for v in found]
-            total += site.importance * min([*prices, basic.cost(0, 0.0, problem.options)])
-    return total
 
 
 def _notes(problem: Problem, ordered: Ordered) -> tuple[str, ...]:

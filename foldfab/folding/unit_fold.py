@@ -23,8 +23,10 @@ from foldfab.folding.candidates import (
     candidates,
     clearances,
     held,
+    is_slantable,
     levels,
     options,
+    seen_from,
     surroundings,
 )
 from foldfab.folding.choose import cheapest
@@ -38,6 +40,11 @@ from foldfab.geometry.arrays import Array, Bools
 
 ROUNDS = 60
 """Choices that are tried for one unit before it counts as not foldable at this moment."""
+
+
+Limits = dict[tuple[str, str], tuple[float, float, str]]
+"""By (lower, upper) base: how far the upper cluster may come down before it meets something that lies flat, before it
+meets something that is not folded yet, and the owner of the latter."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,10 +74,61 @@ class Refusal:
     reason: str
 
 
-def fold_unit(problem: Problem, scene: Scene, unit: Unit, *, in_place: bool = False) -> UnitFold | Refusal:
-    """The cheapest valid folding solution of a unit in the scene, or why there is none."""
+def fold_unit(
+    problem: Problem, scene: Scene, unit: Unit, *, in_place: bool = False, is_final: bool = False
+) -> UnitFold | Refusal:
+    """The cheapest valid folding solution of a unit in the scene, or why there is none.
+
+    A solution is found once for all scenes that look the same from the unit. Where it has been carried to decides
+    only between options of equal cost, and is looked at only where the fold `is_final`.
+    """
     around = surroundings(problem, scene, unit)
     limits = _limits(problem, unit, around)
+    offset = np.round(scene.offset[unit.bases[0]], 3)
+    gone = frozenset(p for u in scene.units if u.name in scene.done for p in u.patches if p not in scene.chains)
+    key = (unit, in_place, tuple(offset) if is_final else None, gone, view(problem, unit, around, limits))
+    if key not in problem.solved:
+        problem.solved[key] = _fold(problem, scene, unit, around, limits, in_place=in_place)
+    found: UnitFold | Refusal = problem.solved[key]
+    return found
+
+
+def view(problem: Problem, unit: Unit, around: Surroundings, limits: Limits) -> object:
+    """All of its surroundings that the fold of a unit can depend on, hashable."""
+    relevant = np.zeros(len(around.owner), dtype=bool)
+    base = np.array([around.cluster[around.solids[s].base] for s in around.owner])
+    for name, (low, high) in seen_from(problem, unit).items():
+        near = (around.low <= high).all(1) & (around.high >= low).all(1)
+        relevant |= near & (base == name)
+    if is_slantable(problem, unit):
+        relevant |= _crossing(problem, unit, around, base)
+    labels = tuple(
+        (around.solids[around.owner[i]].owner, around.solids[around.owner[i]].state) for i in np.nonzero(relevant)[0]
+    )
+    shape = np.round(np.concatenate([around.low[relevant], around.high[relevant]]), 4) + 0.0
+    clear = clearances(problem, unit)
+    numbers = tuple(
+        (pair, round(min(flat, clear[pair]), 4), (round(up, 4), owner) if up < clear[pair] else None)
+        for pair, (flat, up, owner) in limits.items()
+    )
+    return (labels, shape.tobytes(), numbers)
+
+
+def _crossing(problem: Problem, unit: Unit, around: Surroundings, base: Array) -> Bools:
+    """Boxes of the upper and of the lower cluster that may meet while the unit slants."""
+    reach = max(problem.sites[p].clear / np.cos(problem.sites[p].lean) for p in unit.patches)
+    below, above = base == unit.bases[0], base == unit.bases[1]
+    low, high = around.low[above] - reach, around.high[above] + [reach, reach, 0.0]
+    near = (around.low[below][:, None] <= high[None]).all(-1) & (around.high[below][:, None] >= low[None]).all(-1)
+    found = np.zeros(len(base), dtype=bool)
+    found[np.nonzero(below)[0][near.any(1)]] = True
+    found[np.nonzero(above)[0][near.any(0)]] = True
+    return found
+
+
+def _fold(
+    problem: Problem, scene: Scene, unit: Unit, around: Surroundings, limits: Limits, *, in_place: bool
+) -> UnitFold | Refusal:
     standing = _held_up(problem, unit, limits)
     if standing:
         return Refusal(unit, f"{standing} stands in the way unfolded")
@@ -103,11 +161,6 @@ class _Clash:
 
     patches: tuple[str, ...]
     reason: str
-
-
-Limits = dict[tuple[str, str], tuple[float, float, str]]
-"""By (lower, upper) base: how far the upper cluster may come down before it meets something that lies flat, before it
-meets something that is not folded yet, and the owner of the latter."""
 
 
 def _limits(problem: Problem, unit: Unit, around: Surroundings) -> Limits:

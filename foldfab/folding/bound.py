@@ -1,9 +1,9 @@
 """A lower bound on the cost of any folding solution.
 
 Each unit is relaxed to the choice of one whole-patch variant or deletion for each of its patches, where the only
-conflicts left are those that no order, window or plinth can lift: two chains between the same bases that cannot move
-alike (condition ii of section 5.2). The cheapest such choices add up to a bound, because terms of eq. 1 are never
-shared by units. At least the sum of each patch's cheapest option.
+conflicts left are those that no order, window or plinth can lift: two chains between the same bases that drag them
+different ways (condition ii of section 5.2). The cheapest such choices add up to a bound, because terms of eq. 1 are
+never shared by units. At least the sum of each patch's cheapest option.
 """
 
 from __future__ import annotations

@@ -63,6 +63,8 @@ class Problem:
     """By unit and base, the bounds of all its sweeps as seen from that base."""
     solved: dict[object, Any] = field(default_factory=dict)
     """Solutions of units, by all that they depend on."""
+    banned: frozenset[tuple[str, Variant]] = frozenset()
+    """Variants, without plinths, that a rehearsal of the whole fold has shown to be in the way."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -124,7 +126,8 @@ def variants(problem: Problem, site: Site, *, may_slant: bool) -> tuple[Variant,
     """The variants of a patch without plinths, found once."""
     key = (site.patch.name, may_slant)
     if key not in problem.forms:
-        problem.forms[key] = basic.variants(site, problem.options, problem.thickness, may_slant=may_slant)
+        found = basic.variants(site, problem.options, problem.thickness, may_slant=may_slant)
+        problem.forms[key] = tuple(v for v in found if (site.patch.name, v) not in problem.banned)
     return problem.forms[key]
 
 

@@ -52,6 +52,8 @@ class Scene:
     """The chains of folded units, by patch; a patch of a folded unit that is not here is deleted."""
     done: frozenset[str]
     """Names of the units that are folded."""
+    planned: Mapping[str, Chain] | None = None
+    """The chains of all units where they are known already, to show unfolded patches as they will be."""
     history: frozenset[object] = frozenset()
     """What was chosen for each folded unit: two scenes with the same history are the same."""
     shapes: dict[object, Boxes] = field(default_factory=dict)
@@ -106,15 +108,16 @@ def solids(scene: Scene, unit: Unit) -> list[Solid]:
 
 def _patch_solids(scene: Scene, patch: str, *, is_done: bool) -> list[Solid]:
     site = scene.sites[patch]
-    if not is_done:
+    if not is_done and scene.planned is None:
         return [Solid(patch, "open", site.anchor, moved(_open(scene, site), scene.offset[site.anchor]))]
-    if patch not in scene.chains:
+    chain = (scene.chains if is_done or scene.planned is None else scene.planned).get(patch)
+    if chain is None:
         return []
-    chain = scene.chains[patch]
-    near, far = _folded(scene, chain)
-    found = [Solid(patch, "folded", chain.anchor, moved(near, scene.offset[chain.anchor]))]
+    near, far = _chain(scene, chain, progress=1.0 if is_done else 0.0)
+    state: State = "folded" if is_done else "open"
+    found = [Solid(patch, state, chain.anchor, moved(near, scene.offset[chain.anchor]))]
     if chain.far is not None:
-        found.append(Solid(patch, "folded", chain.far, moved(far, scene.offset[chain.far])))
+        found.append(Solid(patch, state, chain.far, moved(far, scene.offset[chain.far])))
     return found
 
 
@@ -130,12 +133,12 @@ def _open(scene: Scene, site: Site) -> Boxes:
     return scene.shapes[site]
 
 
-def _folded(scene: Scene, chain: Chain) -> tuple[Boxes, Boxes]:
-    """A folded chain with its foot on the anchor, and its foot on the far base."""
-    near, far = (chain, "near"), (chain, "far")
+def _chain(scene: Scene, chain: Chain, progress: float) -> tuple[Boxes, Boxes]:
+    """An open or folded chain with its foot on the anchor, and its foot on the far base."""
+    near, far = (chain, progress), (chain, "far")
     if near not in scene.shapes:
         thick = scene.thickness
-        flat = anatomy.moving_boxes(chain, thick, np.ones(1))[0]
+        flat = anatomy.moving_boxes(chain, thick, np.array([progress]))[0]
         scene.shapes[near] = stacked([flat, anatomy.anchor_feet(chain, thick)])
         scene.shapes[far] = anatomy.far_feet(chain, thick)
     return scene.shapes[near], scene.shapes[far]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from foldfab.folding.bound import lower_bound
 from foldfab.folding.candidates import Problem, is_slantable, variants
 from foldfab.folding.model import FoldSolution, Modification, Step, Thickness
 from foldfab.folding.ordering import Ordered, greedy, travel
+from foldfab.folding.rehearsal import first_clash
 from foldfab.folding.scene import Scene, advanced, open_scene
 from foldfab.folding.site import Site, sites, slab
 from foldfab.folding.unit_fold import UnitFold
@@ -19,6 +21,9 @@ from foldfab.folding.units import Unit, decompose
 from foldfab.geometry.arrays import Array
 from foldfab.geometry.boxes import bounds
 from foldfab.scaffold.model import Scaffold
+
+REHEARSALS = 8
+"""How often the fold is solved anew because a rehearsal of the whole has shown a clash; the kernel judges the last."""
 
 
 def solve(scaffold: Scaffold) -> FoldSolution:
@@ -35,10 +40,16 @@ def solve(scaffold: Scaffold) -> FoldSolution:
     problem = Problem(scaffold, scaffold.recipe.fold, thickness, placed, *_box(scaffold, thickness, placed))
     _require_variants(problem, units)
     scene = open_scene(scaffold, thickness, placed, units)
-    ordered = greedy(problem, scene)
-    if ordered.refusals:
-        raise FoldingError(_refused(ordered))
-    return _solution(problem, scene, units, ordered)
+    bound = lower_bound(problem, units)
+    for _ in range(REHEARSALS):
+        ordered = greedy(problem, scene)
+        if ordered.refusals:
+            raise FoldingError(_refused(ordered))
+        met = first_clash(problem, scene, ordered.folds)
+        if met is None:
+            break
+        problem = replace(problem, banned=problem.banned | {met}, forms={}, room={}, solved={})
+    return _solution(problem, scene, bound, ordered)
 
 
 def _box(scaffold: Scaffold, thickness: Thickness, placed: Mapping[str, Site]) -> tuple[Array, Array]:
@@ -69,14 +80,16 @@ def _refused(ordered: Ordered) -> str:
     return "no folding solution: " + "; ".join(told)
 
 
-def _solution(problem: Problem, scene: Scene, units: tuple[Unit, ...], ordered: Ordered) -> FoldSolution:
+def _solution(problem: Problem, scene: Scene, bound: float, ordered: Ordered) -> FoldSolution:
     steps = _steps(scene, ordered.folds)
     chains = tuple(sorted((c for f in ordered.folds for c in f.chains), key=lambda c: c.patch))
     changed = [_modification(problem, fold, patch) for fold in ordered.folds for patch in fold.unit.patches]
     changed.sort(key=lambda m: m.patch)
     cost = sum(m.cost for m in changed)
-    bound, notes = min(lower_bound(problem, units), cost), _notes(problem, ordered)
-    return FoldSolution(problem.scaffold, problem.thickness, chains, tuple(changed), steps, cost, bound, notes)
+    notes = _notes(problem, ordered)
+    return FoldSolution(
+        problem.scaffold, problem.thickness, chains, tuple(changed), steps, cost, min(bound, cost), notes
+    )
 
 
 def _steps(scene: Scene, folds: tuple[UnitFold, ...]) -> tuple[Step, ...]:

@@ -35,9 +35,11 @@ def board(name: str, z: float, width: float = 200.0, depth: float = 80.0, x: flo
     return make_box(name, (x, y, z), (width, depth, K))
 
 
-def wall(name: str, x: float, low: float, high: float, depth: float = 60.0, y: float = 0.0, **more: bool) -> Part:
+def wall(
+    name: str, x: float, low: float, high: float, depth: float = 60.0, y: float = 0.0, hingeable: bool = True
+) -> Part:
     """An upright board facing x, from the face of the board at `low` to that of the board at `high`."""
-    return make_box(name, (x, y, (low + high) / 2), (K, depth, high - low - K), **more)
+    return make_box(name, (x, y, (low + high) / 2), (K, depth, high - low - K), hingeable=hingeable)
 
 
 def leaning(name: str, foot: float, top: float, low: float, high: float, depth: float = 60.0, y: float = 0.0) -> Part:
@@ -59,7 +61,10 @@ FURNITURE: dict[str, tuple[Part, ...]] = {
     "same_way": (GROUND, CEILING, leaning("near", -60, -40, 0, 84), leaning("far", 40, 60, 0, 84)),
     "two_ways": (GROUND, CEILING, leaning("near", -70, -40, 0, 84), leaning("far", 70, 40, 0, 84)),
     "two_lean": (GROUND, CEILING, leaning("near", -60, -40, 0, 84), wall("far", 60, 0, 84)),
-    "crossing": (GROUND, CEILING, wall("side", -60, 0, 84), make_box("back", (0, 38, 42), (60, K, 80))),
+    "corner": (GROUND, CEILING, wall("side", -60, 0, 84), make_box("back", (0, 38, 42), (60, K, 80))),
+    "beside": (GROUND, CEILING, wall("wall", 0, 0, 84), wall("flap", 6, 0, 54)),
+    "roof": (GROUND, leaning("left", -40, 0, 0, 84), leaning("right", 40, 0, 0, 84)),
+    "passage": (board("low", 0), board("middle", 64, 100), board("high", 128), wall("side", 0, 0, 128)),
     "three_walls": (
         board("ground", 0, 240, 160), board("ceiling", 84, 240, 160),
         wall("left", -110, 0, 84, 120), wall("right", 110, 0, 84, 120),
@@ -100,14 +105,10 @@ def make_recipe(
     name = what if isinstance(what, str) else "parts"
     parts = FURNITURE[what] if isinstance(what, str) else what
     along = np.array(DIRECTION.get(name, (0.0, 0.0, -1.0)) if direction is None else direction)
-    paper = (
-        PrintOptions(Printer("any", (500.0, 500.0, 500.0)), thickness=thickness, clearance=clearance, scale=1.0)
-        if 0
-        else PrintOptions(
-            printer=Printer("any", (500.0, 500.0, 500.0)), thickness=thickness, clearance=clearance, scale=1.0
-        )
+    printing = PrintOptions(
+        printer=Printer("any", (500.0, 500.0, 500.0)), thickness=thickness, clearance=clearance, scale=1.0
     )
-    return Recipe(name, along, parts, FoldOptions(**fold), paper)
+    return Recipe(name, along, parts, FoldOptions(**fold), printing)
 
 
 def make_scaffold(what: str | tuple[Part, ...] | Recipe, **options: Any) -> Scaffold:
@@ -127,3 +128,51 @@ def make_solution(what: str | tuple[Part, ...], **options: Any) -> FoldSolution:
     if isinstance(what, str):
         return _solved(what, tuple(sorted(options.items())))
     return solve(make_scaffold(what, **options))
+
+
+@pytest.fixture(scope="session")
+def box() -> Callable[..., Part]:
+    """Makes a part from its name, centre, size and, where it is turned, axes."""
+    return make_box
+
+
+@pytest.fixture(scope="session")
+def board_at() -> Callable[..., Part]:
+    """Makes a horizontal board: name, z, width, depth, x, y."""
+    return board
+
+
+@pytest.fixture(scope="session")
+def wall_at() -> Callable[..., Part]:
+    """Makes an upright wall that faces x between two boards: name, x, low, high, depth, y."""
+    return wall
+
+
+@pytest.fixture(scope="session")
+def leaning_at() -> Callable[..., Part]:
+    """Makes a wall that leans along x between two boards: name, foot, top, low, high, depth, y."""
+    return leaning
+
+
+@pytest.fixture(scope="session")
+def furniture() -> dict[str, tuple[Part, ...]]:
+    """The parts of all named furniture."""
+    return FURNITURE
+
+
+@pytest.fixture(scope="session")
+def recipe() -> Callable[..., Recipe]:
+    """Makes the recipe of named furniture or of parts."""
+    return make_recipe
+
+
+@pytest.fixture(scope="session")
+def scaffold() -> Callable[..., Scaffold]:
+    """Makes the scaffold of named furniture, of parts, or of a recipe."""
+    return make_scaffold
+
+
+@pytest.fixture(scope="session")
+def solution() -> Callable[..., FoldSolution]:
+    """Makes the folding solution of named furniture or of parts."""
+    return make_solution

@@ -75,11 +75,11 @@ def _body(solution: FoldSolution, name: str, solid: Solid) -> Body:
         )
     index = chain.panels.index(name)
     normal = frames(chain, np.zeros(1))[1][0, index, 0]
-    hinge = _hinge_faces(solution, chain, index, vertices, faces)
+    hinge = _hinge_faces(chain, index, vertices, faces)
     return Body(name, "panel", vertices, faces, normal, float(solid.volume()), hinge)
 
 
-def _hinge_faces(solution: FoldSolution, chain: Chain, index: int, vertices: Array, faces: Indices) -> Indices:
+def _hinge_faces(chain: Chain, index: int, vertices: Array, faces: Indices) -> Indices:
     """Faces of the knuckles of inserted hinges."""
     plane = np.stack([chain.across, chain.rise])
     axes = joints(chain, tilts(chain, np.zeros(1)))[0]
@@ -87,7 +87,7 @@ def _hinge_faces(solution: FoldSolution, chain: Chain, index: int, vertices: Arr
     inserted = [j for j in (index, index + 1) if 0 < j < len(chain.lengths)]
     near = np.zeros(len(faces), dtype=bool)
     for j in inserted:
-        near |= np.linalg.norm(center - axes[j], axis=1) < solution.thickness.panel / 2 + HINGE_SKIN
+        near |= np.linalg.norm(center - axes[j], axis=1) < chain.panel / 2 + HINGE_SKIN
     return np.nonzero(near)[0]
 
 
@@ -101,7 +101,7 @@ def _joints(solution: FoldSolution) -> list[Joint]:
             turn = abs(float((turns[1, j + 1] - turns[1, j]) - (turns[0, j + 1] - turns[0, j])))
             axis = _axis(chain, j)
             inserted = 0 < j < len(chain.lengths)
-            found.append(Joint(f"{a}~{b}", (a, b), axis, solution.thickness.panel / 2, (0.0, round(turn, 3)), inserted))
+            found.append(Joint(f"{a}~{b}", (a, b), axis, chain.panel / 2, (0.0, round(turn, 3)), inserted))
     return sorted(found, key=lambda j: j.name)
 
 

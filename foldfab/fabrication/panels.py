@@ -12,6 +12,7 @@ from foldfab.folding.model import Chain, Thickness
 
 def panels(chain: Chain, thickness: Thickness) -> list[Solid]:
     """The panels of a chain in the open posture, from the anchor on."""
+    thickness = thickness.of(chain.panel)
     origins, axes = frames(chain, np.zeros(1))
     made = [_panel(chain, thickness, i) for i in range(len(chain.lengths))]
     return [placed(body, origins[0, i], axes[0, i]) for i, body in enumerate(made)]

@@ -57,6 +57,7 @@ def _mount(chain: Chain, base: BasePatch, thickness: Thickness, end: int) -> tup
     axis, rise = axis_of(chain, end), chain.rise * (1.0 if end == 0 else -1.0)
     # Right-handed with z along the outward direction of the face.
     frame = np.stack([chain.across, chain.along if end == 0 else -chain.along, rise])
+    face, thickness = faces(base, thickness), thickness.of(chain.panel)
     span, hinge = (chain.span, chain.hinge_spans[0]) if end == 0 else (-chain.span[::-1], -chain.hinge_spans[-1][::-1])
     marks = knuckles(hinge, thickness)
     pad, half = chain.pads[end], thickness.panel / 2
@@ -65,7 +66,6 @@ def _mount(chain: Chain, base: BasePatch, thickness: Thickness, end: int) -> tup
     solid += feet(marks, thickness, depth)
     if pad > 0:
         solid.append(box((-half, span[0], -depth), (half, span[1], -thickness.axis_height)))
-    face = faces(base, thickness)
     low, high = (span if pad > 0 else hinge) + np.array([-RIM, RIM]) * (pad > 0)
     below = thickness.axis_height + pad
     slab = box((-half - RIM, low, -below - (face.top - face.bottom)), (half + RIM, high, -below))

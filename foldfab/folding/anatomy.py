@@ -46,7 +46,7 @@ def base_boxes(base: BasePatch, thickness: Thickness) -> Boxes:
 def moving_boxes(chain: Chain, thickness: Thickness, progress: Array) -> Boxes:
     """Slabs and knuckles (k, 2 m - 1) of a chain at each progress (k,), relative to the anchor's open position."""
     origins, axes = frames(chain, progress)
-    count, half_k = len(chain.lengths), thickness.panel / 2
+    count, half_k = len(chain.lengths), chain.panel / 2
     low = np.where(np.arange(count) == 0, 0.0, thickness.gap / 2)
     is_last_free = np.arange(count) == count - 1
     high = chain.lengths - np.where(is_last_free, 0.0, thickness.gap / 2)
@@ -84,7 +84,7 @@ def _knuckles(chain: Chain, half_k: float, progress: Array, axes: Array) -> Boxe
 
 def _foot(chain: Chain, thickness: Thickness, axis: Array, outward: Array, pad: float, hinge: Array) -> Boxes:
     """From the base face, which lies below the axis seen along `outward`, to the far side of the knuckle."""
-    span = chain.span if pad > 0 else hinge
+    thickness, span = thickness.of(chain.panel), chain.span if pad > 0 else hinge
     low, high = -thickness.axis_height - pad, thickness.panel / 2
     center = axis + outward * (low + high) / 2 + chain.along * float(span.mean())
     half = np.array([[thickness.panel / 2, float(np.ptp(span)) / 2, (high - low) / 2]])

@@ -28,6 +28,8 @@ class Variant:
     hinges: int
     side: Side
     pads: tuple[float, float] = (0.0, 0.0)
+    extra: float = 0.0
+    """What is added to the thickness of its panels, mm."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,8 +89,9 @@ def chain(site: Site, variant: Variant, span: Array, thickness: Thickness) -> Ch
     """The thick chain of a variant with the given extent, or None where its panels would be too short."""
     if abs(site.lean) > STEEPEST:
         return None
+    thickness = thickness.of(thickness.panel + variant.extra)
     lengths = _lengths(site, variant, thickness)
-    if lengths is None:
+    if lengths is None or float(np.ptp(span)) < thickness.hinge_width - 1e-9:
         return None
     turn = np.pi / 2 if variant.side == "r" else -np.pi / 2
     signs = -np.sign(turn) * np.where(np.arange(variant.hinges) % 2 == 0, 1.0, -1.0)
@@ -99,7 +102,7 @@ def chain(site: Site, variant: Variant, span: Array, thickness: Thickness) -> Ch
     hinge_spans = np.array([ends[0], *([span] * variant.hinges), ends[1]])
     return Chain(
         site.patch.name, site.anchor, site.far, variant.mechanism, root, site.across, site.along, site.rise, site.lean,
-        turn, lengths, offsets, span, hinge_spans, variant.pads,
+        turn, lengths, offsets, span, hinge_spans, variant.pads, thickness.panel,
     )  # fmt: skip
 
 

@@ -32,6 +32,10 @@ class Thickness:
     gap: float
     """g, the printed clearance, mm."""
 
+    def of(self, panel: float) -> Thickness:
+        """The same clearance around panels of another thickness, mm."""
+        return Thickness(panel, self.gap)
+
     @property
     def axis_height(self) -> float:
         """How far a base hinge's axis stands off the base face: K/2 + g, mm."""
@@ -144,6 +148,8 @@ class Chain:
     """(m + 1, 2) extent along `along` relative to `root` of each hinge, mm; the last row is unused at a tip."""
     pads: tuple[float, float]
     """Height of the fixed plinths at the anchor and at the far base, mm (the horizontal cropping of section 5.6)."""
+    panel: float
+    """K of its own panels, mm: more than the print's where the stack is balanced by thickness (figure 19)."""
 
     def __post_init__(self) -> None:
         for name, shape in (("root", (3,)), ("across", (3,)), ("along", (3,)), ("rise", (3,))):

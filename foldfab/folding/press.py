@@ -65,7 +65,7 @@ def in_place(bases: tuple[str, ...], way: Mapping[str, float], chains: tuple[Cha
     """The motion of a unit whose bases come straight down; T-scaffolds fold evenly meanwhile."""
     held = [c for c in chains if c.far is not None]
     tips = [c for c in chains if c.far is None]
-    levels = _levels([way[c.far] for c in held if c.far is not None])
+    levels = _levels([way[b] for b in bases if way[b] > SAME_LEVEL]) if held else []
     if not levels:
         return _tips_only(bases, tips)
     sections = [_section(i, levels, way, held) for i in range(len(levels))]
@@ -134,31 +134,38 @@ def _starts_at(chain: Chain, way: Mapping[str, float], level: float) -> bool:
 
 def _section(i: int, levels: list[float], way: Mapping[str, float], held: list[Chain]) -> _Section:
     starting = [c for c in held if _starts_at(c, way, levels[i])]
-    leader = max(starting, key=lambda c: (way[c.anchor], -len(c.lengths), c.patch))
-    until = levels[i + 1] if i + 1 < len(levels) else way[leader.anchor]
-    peaks = [peak(c)[0] for c in starting]
+    leader = _leader(starting or [c for c in held if _is_folding(c, way, levels[i])], way)
+    until = levels[i + 1] if i + 1 < len(levels) else 0.0
+    whole = way[leader.far or ""]
+    is_done = until - way[leader.anchor] <= SAME_LEVEL
+    begin = 0.0 if starting else float(follow_down(leader, np.array([whole - levels[i]]))[0])
+    end = 1.0 if is_done else float(follow_down(leader, np.array([whole - until]))[0])
     rise, at = peak(leader)
-    wanted = (min(peaks) + max(peaks)) / 2
-    is_done = abs(until - way[leader.anchor]) <= SAME_LEVEL
-    end = 1.0 if is_done else float(follow_down(leader, np.array([levels[i] - until]))[0])
-    s = np.linspace(0.0, end, SAMPLES + 1)
-    if 0 < at < end:
+    s = np.linspace(begin, end, SAMPLES + 1)
+    if begin < at < end:
         s = np.unique(np.concatenate([s, np.linspace(0.0, min(2 * at, end), 9)]))
     height = reach(leader, s)[:, 1]
-    press = levels[i] + height - reach(leader, np.zeros(1))[0, 1]
-    is_exact = abs(rise - wanted) < 1e-9
-    if not is_exact and at > 0:
-        press -= (rise - wanted) * np.clip(1 - ((s - at) / np.where(s < at, at, 3 * at)) ** 2, 0, None) ** 2
-    path = float(leader.lengths.max()) * np.pi / 2 * end * len(leader.lengths)
-    return _Section(leader, s, press, s < at, is_exact, path)
+    press = whole + height - reach(leader, np.zeros(1))[0, 1]
+    peaks = [peak(c)[0] for c in starting] or [rise]
+    excess = rise - (min(peaks) + max(peaks)) / 2
+    if at > 0 and starting:
+        press -= excess * np.clip(1 - ((s - at) / np.where(s < at, at, 3 * at)) ** 2, 0, None) ** 2
+    path = float(leader.lengths.max()) * np.pi / 2 * (end - begin) * len(leader.lengths)
+    return _Section(leader, s, press, (s < at) & bool(starting), bool(starting) and abs(excess) < 1e-9, path)
+
+
+def _leader(many: list[Chain], way: Mapping[str, float]) -> Chain:
+    return max(many, key=lambda c: (way[c.anchor], -len(c.lengths), c.patch))
+
+
+def _is_folding(chain: Chain, way: Mapping[str, float], level: float) -> bool:
+    """Whether the chain is on its way while the press passes this level."""
+    return chain.far is not None and way[chain.anchor] < level - SAME_LEVEL < way[chain.far]
 
 
 def _shift(base: str, way: Mapping[str, float], levels: list[float], press: Array, index: Indices) -> Array:
     start = next((i for i, level in enumerate(levels) if abs(way[base] - level) <= SAME_LEVEL), None)
-    if start is None:
-        # Nothing pushes this base from below; it comes down as soon as the press reaches it.
-        return np.minimum(press, way[base]) - way[base] if way[base] > SAME_LEVEL else np.zeros_like(press)
-    return np.where(index >= start, press - way[base], 0.0)
+    return np.zeros_like(press) if start is None else np.where(index >= start, press - way[base], 0.0)
 
 
 def _follow(
@@ -194,7 +201,9 @@ def _is_twin(a: Chain, b: Chain) -> bool:
 
 
 def _times(sections: list[_Section]) -> Array:
-    steps = [np.diff(s.progress, prepend=0.0) * s.path / max(float(s.progress[-1]), 1e-9) for s in sections]
+    steps = [
+        np.diff(s.progress, prepend=s.progress[0]) * s.path / max(float(np.ptp(s.progress)), 1e-9) for s in sections
+    ]
     for step in steps[1:]:
         step[0] = 1e-6 * float(step.sum())
     clock = np.cumsum(np.concatenate(steps))

@@ -113,6 +113,8 @@ def _notes(problem: Problem, ordered: Ordered) -> tuple[str, ...]:
     notes = []
     for fold in ordered.folds:
         for chain in fold.chains:
+            if chain.panel > problem.thickness.panel + 0.01:
+                notes.append(f"{chain.patch} is {chain.panel:.1f} mm thick so that the stack closes flat")
             if sum(chain.pads) > 0.01:
                 notes.append(
                     f"{chain.patch} stands on plinths of {sum(chain.pads):.1f} mm so that the stack closes flat"

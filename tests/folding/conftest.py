@@ -12,7 +12,7 @@ from foldfab.folding import anatomy
 from foldfab.folding.kinematics import configuration
 from foldfab.folding.model import Chain, FoldSolution
 from foldfab.geometry.arrays import Array
-from foldfab.geometry.boxes import Boxes, close_pairs, grown, moved, stacked
+from foldfab.geometry.boxes import Boxes, bounds, close_pairs, grown, moved, stacked
 
 SKIN = 0.03
 """Boxes may share this much, mm: the solver's own tolerance, and a little for times between its samples."""
@@ -29,6 +29,12 @@ def collisions() -> Callable[..., set[tuple[str, str]]]:
 def assert_folds() -> Callable[[FoldSolution], None]:
     """Asserts that a solution is a valid folding transform that ends flat."""
     return check_folds
+
+
+@pytest.fixture(scope="session")
+def extent() -> Callable[[FoldSolution, float], tuple[Array, Array]]:
+    """Lower and upper corners (3,) of everything at a time."""
+    return find_extent
 
 
 def check_folds(solution: FoldSolution) -> None:
@@ -62,6 +68,12 @@ def find_collisions(solution: FoldSolution, times: int = TIMES) -> set[tuple[str
             if not _are_kin(solution, a, b) and len(close_pairs(grown(one, -SKIN), grown(other, -SKIN))[0]):
                 found.add((a, b))
     return found
+
+
+def find_extent(solution: FoldSolution, t: float) -> tuple[Array, Array]:
+    """Lower and upper corners (3,) of all boxes at time t."""
+    low, high = bounds(stacked([boxes for _, boxes in _placed(solution, t)]))
+    return low.min(0), high.max(0)
 
 
 def _are_kin(solution: FoldSolution, a: str, b: str) -> bool:

@@ -1,0 +1,60 @@
+"""The MWISP of section 5.4 by constraint programming, for units that are too tangled for plain branch and bound.
+
+One Boolean for each option, exactly one true in each group; an option and all options of another group that it
+excludes are at most one. CP-SAT runs with one worker, a fixed seed and a limit in work and not in time, so that the
+same unit always gets the same answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from foldfab.geometry.arrays import Array, Bools
+
+UNITS_PER_COST = 1e8
+"""Costs are rounded to integers of this resolution."""
+WORK = 20.0
+"""Deterministic time after which the best choice so far is taken."""
+
+
+def proven(
+    alive: Mapping[int, Bools], costs: list[Array], table: Mapping[tuple[int, int], Bools],
+    forbidden: list[tuple[tuple[int, int], ...]], known: Mapping[int, int] | None,
+) -> dict[int, int] | None:  # fmt: skip
+    """The cheapest option for each group, or None where there is no choice without conflicts.
+
+    Args:
+        alive: by group, which of its options (n,) may be taken.
+        costs: for each group, the costs (n,) of its options.
+        table: by ordered pair of groups, which of their options (n_g, n_h) exclude each other.
+        forbidden: combinations of (group, option) that must not all be taken together.
+        known: the best choice known, to start from.
+    """
+    from ortools.sat.python import cp_model
+
+    model = cp_model.CpModel()
+    on = {(g, int(o)): model.new_bool_var(f"{g}/{o}") for g, left in alive.items() for o in np.nonzero(left)[0]}
+    for g, left in alive.items():
+        model.add_exactly_one(on[g, int(o)] for o in np.nonzero(left)[0])
+    for (g, h), excluded in table.items():
+        if g in alive and h in alive:
+            for o in np.nonzero(alive[g])[0]:
+                others = np.nonzero(excluded[o] & alive[h])[0]
+                if len(others):
+                    model.add_at_most_one([on[g, int(o)], *(on[h, int(p)] for p in others)])
+    for combination in forbidden:
+        if all(key in on for key in combination):
+            model.add_bool_or([~on[key] for key in combination])
+    model.minimize(sum(round(float(costs[g][o]) * UNITS_PER_COST) * var for (g, o), var in on.items()))
+    for key in (known or {}).items():
+        model.add_hint(on[key], True)
+    solver = cp_model.CpSolver()
+    solver.parameters.num_workers = 1
+    solver.parameters.random_seed = 0
+    solver.parameters.max_deterministic_time = WORK
+    status = solver.solve(model)
+    if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+        return {key[0]: key[1] for key, var in on.items() if solver.value(var)}
+    return dict(known) if known is not None else None

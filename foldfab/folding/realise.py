@@ -1,0 +1,125 @@
+"""A choice made real: bases lowered, chains balanced to end flat, the fold simulated (sections 5.4 and 5.6)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import networkx as nx
+import numpy as np
+
+from foldfab.folding import basic, press
+from foldfab.folding.basic import Option, Variant
+from foldfab.folding.candidates import PAD_SHARE, Problem, Surroundings, clearances, levels
+from foldfab.folding.conflict import play_limit
+from foldfab.folding.model import Chain
+from foldfab.folding.press import Motion
+from foldfab.folding.scene import Scene
+from foldfab.folding.simulate import clashes
+from foldfab.folding.units import Unit
+from foldfab.folding.view import Limits
+
+THICKEST = 1.5
+"""Panels may be this many times as thick as the others where that closes a stack flat."""
+
+
+@dataclass(frozen=True, slots=True)
+class Clash:
+    """Why a choice does not work."""
+
+    patches: tuple[tuple[str, ...], ...]
+    """Sets of patches whose options must not be taken together again."""
+    reason: str
+    is_geometric: bool = False
+    """Whether parts met, so that wider windows of the same patches would meet as well."""
+
+
+def realised(
+    problem: Problem, scene: Scene, unit: Unit, around: Surroundings, limits: Limits, chosen: Mapping[str, Option]
+) -> tuple[tuple[Chain, ...], Motion] | Clash:
+    """The chains and the motion of a choice, or what is wrong with it."""
+    if not _stays_connected(problem, scene, unit, chosen):
+        gone = tuple(p for p in chosen if chosen[p].variant is None)
+        return Clash((gone,), "deleting it would cut the furniture in two")
+    result: tuple[tuple[Chain, ...], Motion] | Clash = Clash((tuple(chosen),), "")
+    for by_thickness in (True, False):
+        made = _balanced(problem, unit, limits, chosen, by_thickness=by_thickness)
+        result = made if isinstance(made, Clash) else _played(problem, unit, around, chosen, *made)
+        if not isinstance(result, Clash):
+            break
+    return result
+
+
+def _played(
+    problem: Problem, unit: Unit, around: Surroundings, chosen: Mapping[str, Option],
+    chains: tuple[Chain, ...], way: Mapping[str, float],
+) -> tuple[tuple[Chain, ...], Motion] | Clash:  # fmt: skip
+    """The chains with their motion, or what meets while they fold."""
+    is_slanted = any(c.mechanism == "slanted" and c.far is not None for c in chains)
+    motion = press.slanted(unit.bases, chains) if is_slanted else press.in_place(unit.bases, way, chains)
+    for chain in chains:
+        if np.abs(motion.play[chain.patch]).max() > play_limit(chain, problem.thickness):
+            return Clash((tuple(chosen),), f"{chain.patch} cannot follow the other chains of its unit")
+    met = list(clashes(chains, motion, around, problem.thickness))
+    if met:
+        mine = [tuple(p for p in pair if p in chosen) or tuple(chosen) for pair in met]
+        return Clash(tuple(dict.fromkeys(mine)), f"{met[0][0]} meets {met[0][1]}", is_geometric=True)
+    return chains, motion
+
+
+def _balanced(
+    problem: Problem, unit: Unit, limits: Limits, chosen: Mapping[str, Option], *, by_thickness: bool
+) -> tuple[tuple[Chain, ...], dict[str, float]] | Clash:
+    """The chains with what lets all of them end flat together, and the ways of the bases.
+
+    What a chain lacks to the height of its neighbours is given to its panels, where they would not get thicker than
+    `THICKEST` times the others, or to a plinth under its last hinge.
+    """
+    clear, thick = clearances(problem, unit), problem.thickness
+    stacks = {p: _stack(problem, p, o.variant) for p, o in chosen.items() if o.variant is not None}
+    least = {pair: clear[pair] - limits[pair][0] for pair in limits if np.isfinite(limits[pair][0])}
+    for patch, height in stacks.items():
+        site = problem.sites[patch]
+        if site.far is not None:
+            pair = (site.anchor, site.far)
+            least[pair] = max(least.get(pair, -np.inf), height)
+    way = press.ways(unit.bases, least, clear, levels(problem, unit))
+    chains = []
+    for patch in sorted(stacks):
+        site, variant = problem.sites[patch], chosen[patch].variant
+        assert variant is not None
+        if site.far is not None:
+            slack = clear[site.anchor, site.far] - (way[site.far] - way[site.anchor]) - stacks[patch]
+            variant = _filled(variant, max(slack, 0.0), thick.panel, by_thickness=by_thickness)
+        span = basic.window_span(site, chosen[patch].window, problem.options.shrink_steps, thick)
+        chain = basic.chain(site, variant, span, thick) if span is not None else None
+        if chain is None or sum(variant.pads) > PAD_SHARE * site.clear:
+            return Clash(((patch,),), f"{patch} is too short to end flat on a plinth of {sum(variant.pads):.1f} mm")
+        chains.append(chain)
+    return tuple(chains), way
+
+
+def _filled(variant: Variant, slack: float, panel: float, *, by_thickness: bool) -> Variant:
+    """The variant that takes up `slack` mm more when folded."""
+    extra = slack / (variant.hinges + 1)
+    if by_thickness and panel + extra <= THICKEST * panel:
+        return replace(variant, extra=extra)
+    return replace(variant, pads=(variant.pads[0], variant.pads[1] + slack))
+
+
+def _stack(problem: Problem, patch: str, variant: Variant) -> float:
+    is_held = problem.sites[patch].far is not None
+    return problem.thickness.stack(variant.hinges + 1, has_upper_base=is_held) + sum(variant.pads)
+
+
+def _stays_connected(problem: Problem, scene: Scene, unit: Unit, chosen: Mapping[str, Option]) -> bool:
+    gone = {p for p, o in chosen.items() if o.variant is None}
+    if not gone:
+        return True
+    graph: nx.Graph[str] = nx.Graph()
+    graph.add_nodes_from(b.name for b in problem.scaffold.bases)
+    for other in scene.units:
+        if other.name in scene.done:
+            gone |= {p for p in other.patches if p not in scene.chains}
+    graph.add_edges_from(p.bases for p in problem.scaffold.patches if p.name not in gone and len(p.bases) == 2)
+    return bool(nx.is_connected(graph))

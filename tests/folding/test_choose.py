@@ -1,0 +1,89 @@
+"""The cheapest choice is the one that trying all of them finds."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from foldfab.folding.choose import cheapest
+from foldfab.geometry.arrays import Array, Bools
+
+Conflicts = dict[tuple[int, int], Bools]
+Forbidden = frozenset[tuple[tuple[int, int], ...]]
+INF = float("inf")
+
+
+def is_allowed(choice: tuple[int, ...], costs: list[Array], conflicts: Conflicts, forbidden: Forbidden) -> bool:
+    return (
+        all(np.isfinite(costs[g][o]) for g, o in enumerate(choice))
+        and not any(table[choice[g], choice[h]] for (g, h), table in conflicts.items())
+        and not any(all(choice[g] == o for g, o in combination) for combination in forbidden)
+    )
+
+
+def price(choice: tuple[int, ...], costs: list[Array]) -> float:
+    return float(sum(costs[g][o] for g, o in enumerate(choice)))
+
+
+@st.composite
+def instances(draw: st.DrawFn) -> tuple[list[Array], Conflicts, Forbidden]:
+    """Up to five patches of up to four options, with few prices so that ties are common."""
+    sizes = draw(st.lists(st.integers(1, 4), min_size=1, max_size=5))
+    prices = st.sampled_from([0.0, 0.1, 0.25, 0.5, 1.0, INF])
+    costs = [np.array(draw(st.lists(prices, min_size=n, max_size=n))) for n in sizes]
+    conflicts = {
+        (g, h): np.array(draw(st.lists(st.booleans(), min_size=n * m, max_size=n * m))).reshape(n, m)
+        for (g, n), (h, m) in itertools.combinations(enumerate(sizes), 2)
+        if draw(st.booleans())
+    }
+    choices = st.tuples(*(st.integers(0, n - 1) for n in sizes))
+    parts = st.sets(st.integers(0, len(sizes) - 1), min_size=1)
+    banned = draw(st.lists(st.tuples(choices, parts), max_size=4))
+    return costs, conflicts, frozenset(tuple((g, c[g]) for g in sorted(p)) for c, p in banned)
+
+
+@given(instances())
+@settings(deadline=None, derandomize=True, max_examples=150)
+def test_no_choice_is_cheaper(instance: tuple[list[Array], Conflicts, Forbidden]) -> None:
+    costs, conflicts, forbidden = instance
+    every = itertools.product(*(range(len(c)) for c in costs))
+    allowed = [choice for choice in every if is_allowed(choice, costs, conflicts, forbidden)]
+    found = cheapest(costs, conflicts, forbidden)
+    if not allowed:
+        assert found is None
+    else:
+        assert found in allowed
+        assert price(found, costs) == pytest.approx(min(price(choice, costs) for choice in allowed))
+
+
+def test_without_conflicts_each_patch_takes_its_cheapest_option() -> None:
+    assert cheapest([np.array([2.0, 1.0]), np.array([0.5, 3.0])], {}) == (1, 0)
+
+
+def test_options_of_equal_cost_are_taken_in_the_order_given() -> None:
+    assert cheapest([np.array([1.0, 1.0, 1.0]), np.array([0.0, 0.0])], {}) == (0, 0)
+
+
+def test_a_conflict_is_paid_for_where_it_costs_least() -> None:
+    costs = [np.array([0.0, 1.0]), np.array([0.0, 0.4])]
+    conflicts = {(0, 1): np.array([[True, False], [False, False]])}
+    assert cheapest(costs, conflicts) == (0, 1)
+
+
+def test_an_infinite_option_is_never_taken() -> None:
+    assert cheapest([np.array([INF, 7.0])], {}) == (1,)
+    assert cheapest([np.array([INF, INF])], {}) is None
+
+
+def test_a_forbidden_combination_leaves_its_parts_allowed() -> None:
+    costs = [np.array([0.0, 1.0]), np.array([0.0, 1.0]), np.array([0.0, 3.0])]
+    forbidden = frozenset({((0, 0), (1, 0), (2, 0))})
+    assert cheapest(costs, {}, forbidden) in {(0, 1, 0), (1, 0, 0)}
+
+
+def test_patches_that_exclude_each_other_have_no_choice() -> None:
+    assert cheapest([np.zeros(2), np.zeros(3)], {(0, 1): np.ones((2, 3), dtype=bool)}) is None

@@ -1,0 +1,158 @@
+"""The whole corridor: what is put in, what lies in the folder, and what is left behind when it goes wrong."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import foldfab
+from foldfab import cli
+from foldfab.errors import AbstractionError, FabricationError, FoldingError
+from foldfab.fabrication.inspect import printed_extent
+from foldfab.fabrication.model import Assembly
+
+SMALL = ("bench-legs", "table-slanted")
+"""Two shipped recipes that print quickly."""
+TABLE: list[dict[str, Any]] = [
+    {"name": "top", "box": {"center": [0, 0, 700], "size": [1400, 700, 30]}},
+    {"name": "leg-left", "box": {"center": [-600, 0, 342], "size": [30, 600, 685]}},
+    {"name": "leg-right", "box": {"center": [600, 0, 342], "size": [30, 600, 685]}},
+]
+LONG, TALL = {"name": "long", "build_volume": [150, 400, 400]}, {"name": "low", "build_volume": [400, 400, 120]}
+
+
+@pytest.mark.parametrize("posture", ["open", "folded"])
+@pytest.mark.parametrize("printer", ["prusa-mk4", "makerbot-replicator-2", LONG, TALL], ids=str)
+def test_fit_uses_the_bed(tmp_path: Path, posture: str, printer: Any) -> None:
+    made = fabricated(tmp_path, direction="-z", print={"posture": posture, "printer": printer, "scale": "fit"})
+    bed = np.array(made.solution.scaffold.recipe.print.printer.build_volume)
+    size = printed_extent(made)
+    shares = [(way / bed).max() for way in (size, size[[1, 0, 2]]) if (way <= bed).all()]
+    assert shares, f"{size} does not fit {bed}"
+    assert max(shares) >= 0.9, f"{size} leaves most of {bed} empty"
+
+
+def test_a_scale_of_ones_own_is_kept(tmp_path: Path) -> None:
+    made = fabricated(tmp_path, direction="-z", print={"scale": 0.1})
+    assert made.solution.scaffold.scale == 0.1
+    assert made.posture == "open"
+    assert foldfab.fabricate(made.solution, posture="folded").posture == "folded"
+
+
+def test_a_scale_that_does_not_fit_says_which_would(tmp_path: Path) -> None:
+    with pytest.raises(FabricationError, match=r"at scale 0\.\d+ or smaller"):
+        fabricated(tmp_path, direction="-z", print={"scale": 0.5})
+
+
+def test_auto_takes_the_cheapest_direction(tmp_path: Path) -> None:
+    found = foldfab.foldabilize(loaded(tmp_path, direction="auto"))
+    costs = []
+    for axis in ("-z", "-x", "-y", "+z", "+x", "+y"):
+        try:
+            costs.append(foldfab.foldabilize(loaded(tmp_path, direction=axis)).cost)
+        except (AbstractionError, FoldingError):
+            continue
+    assert found.cost == pytest.approx(min(costs))
+    assert np.abs(found.scaffold.direction).max() == 1.0
+
+
+def test_auto_says_why_nothing_folds(tmp_path: Path) -> None:
+    apart = [TABLE[0], {"name": "far", "box": {"center": [0, 0, 9000], "size": [100, 100, 30]}}]
+    with pytest.raises(FoldingError, match="none of the six axis directions") as raised:
+        foldfab.foldabilize(loaded(tmp_path, parts=apart, direction="auto"))
+    assert len(str(raised.value).splitlines()) >= 7
+
+
+def test_a_direction_without_a_scaffold_names_one_that_works(tmp_path: Path) -> None:
+    with pytest.raises(AbstractionError, match="try --direction -z") as raised:
+        foldfab.foldabilize(loaded(tmp_path, direction=[1, 1, 1]))
+    assert raised.value.exit_status == 1
+
+
+def test_furniture_in_two_pieces_names_the_loose_part(tmp_path: Path) -> None:
+    apart = [*TABLE, {"name": "far", "box": {"center": [0, 0, 9000], "size": [100, 100, 30]}}]
+    with pytest.raises(AbstractionError, match="far does not touch the rest") as raised:
+        foldfab.foldabilize(loaded(tmp_path, parts=apart, direction="-z"))
+    assert raised.value.parts == ("far",)
+
+
+@pytest.mark.parametrize(
+    ("changes", "status"),
+    [
+        ({"direction": [1, 1, 1]}, 1),
+        ({"direction": "-z", "print": {"scale": 0.5}}, 1),
+        ({"direction": "sideways"}, 2),
+        ({"direction": "-z", "colour": "red"}, 2),
+    ],
+)
+def test_an_error_leaves_no_files(
+    tmp_path: Path, changes: dict[str, Any], status: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = recipe_file(tmp_path, **changes)
+    assert cli.main(["print", str(path), "-o", str(tmp_path / "prints")]) == status
+    assert capsys.readouterr().err.startswith("foldfab: ")
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_an_error_leaves_the_old_print(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    prints = tmp_path / "prints"
+    assert cli.main(["print", str(recipe_file(tmp_path, direction="-z")), "-q", "-o", str(prints)]) == 0
+    before = contents(prints)
+    for broken in ({"print": {"scale": 0.5}, "direction": "-z"}, {"direction": "sideways"}):
+        assert cli.main(["print", str(recipe_file(tmp_path, **broken)), "-o", str(prints)]) > 0
+        assert contents(prints) == before
+    assert "foldfab: " in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("posture", ["open", "folded"])
+@pytest.mark.parametrize("name", SMALL)
+def test_a_shipped_recipe_prints_and_passes_its_own_check(tmp_path: Path, name: str, posture: str) -> None:
+    folder = tmp_path / name
+    assert cli.main(["print", name, "--posture", posture, "-q", "-o", str(tmp_path)]) == 0
+    report = foldfab.check(folder)
+    assert report.ok, [row for row in report.rows if not row.ok]
+    assert json.loads((folder / "sheet.json").read_text())["posture"] == posture
+    assert cli.main(["check", str(folder)]) == 0
+
+
+def test_the_same_input_gives_the_same_bytes(tmp_path: Path) -> None:
+    found = []
+    for run in ("one", "two"):
+        recipe = foldfab.load(SMALL[1])
+        foldfab.write(foldfab.fabricate(foldfab.foldabilize(recipe)), tmp_path / run / SMALL[1])
+        found.append(contents(tmp_path / run))
+    assert sorted(found[0]) == sorted(found[1])
+    assert [name for name in found[0] if found[0][name] != found[1][name]] == []
+
+
+def test_a_print_can_be_made_from_the_recipe_in_its_folder(tmp_path: Path) -> None:
+    folder = tmp_path / "first" / SMALL[0]
+    foldfab.write(foldfab.fabricate(foldfab.foldabilize(foldfab.load(SMALL[0]))), folder)
+    again = foldfab.load(str(folder / "recipe.json"), posture="folded")
+    assert foldfab.foldabilize(again).cost == pytest.approx(json.loads((folder / "sheet.json").read_text())["cost"])
+
+
+def recipe_file(folder: Path, **changes: Any) -> Path:
+    """A recipe of a plain table, with changes."""
+    path = folder / "table.json"
+    path.write_text(json.dumps({"parts": TABLE, **changes}))
+    return path
+
+
+def loaded(folder: Path, **changes: Any) -> Any:
+    """The recipe of a plain table, with changes."""
+    return foldfab.load(str(recipe_file(folder, **changes)))
+
+
+def fabricated(folder: Path, **changes: Any) -> Assembly:
+    """The print of a plain table, with changes."""
+    return foldfab.fabricate(foldfab.foldabilize(loaded(folder, **changes)))
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    """By path in the folder, the bytes of each file."""
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}

@@ -15,16 +15,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from foldfab.errors import AbstractionError, FoldfabError, FoldingError
-from foldfab.folding.model import FoldSolution
-from foldfab.folding.solve import solve
 from foldfab.geometry.arrays import Array
 from foldfab.recipe.model import Posture, Recipe
-from foldfab.scaffold.abstract import abstract
-from foldfab.scaffold.model import Scaffold
 
 if TYPE_CHECKING:
     from foldfab.export.report import Report
     from foldfab.fabrication.model import Assembly
+    from foldfab.folding.model import FoldSolution
+    from foldfab.scaffold.model import Scaffold
 
 Progress = Callable[[str], None]
 """Called with what is being done, one short line."""
@@ -113,6 +111,8 @@ def shipped() -> tuple[Path, ...]:
 
 
 def _along(recipe: Recipe, direction: Array) -> FoldSolution:
+    from foldfab.folding.solve import solve
+
     scale = recipe.print.scale or _fitting_scale(recipe, direction)
     if recipe.print.scale is not None or recipe.print.posture == "open":
         return solve(_abstracted(recipe, direction, scale))
@@ -126,6 +126,8 @@ def _along(recipe: Recipe, direction: Array) -> FoldSolution:
 
 
 def _abstracted(recipe: Recipe, direction: Array, scale: float) -> Scaffold:
+    from foldfab.scaffold.abstract import abstract
+
     try:
         return abstract(recipe, direction, scale)
     except AbstractionError as error:
@@ -136,6 +138,8 @@ def _abstracted(recipe: Recipe, direction: Array, scale: float) -> Scaffold:
 
 
 def _has_scaffold(recipe: Recipe, axis: tuple[int, int, int], scale: float) -> bool:
+    from foldfab.scaffold.abstract import abstract
+
     try:
         return bool(abstract(recipe, np.array(axis, dtype=np.float64), scale).patches)
     except AbstractionError:

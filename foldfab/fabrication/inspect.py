@@ -24,6 +24,12 @@ GAP_SHARE = 0.93
 """The least gap as printed, as a share of the clearance; facets take a little."""
 FRAMES_PER_STEP = 14
 """Instants of each step that are looked at."""
+PULL_GAPS = 4.0
+"""The halves of a hinge must meet before they are pulled this many clearances (or a knuckle's radius) apart."""
+HELD = 0.02
+"""Halves that share this volume hold each other, mm³."""
+LOOSEST = 0.155
+"""The clearance that a hinge can have, as a share of the plates' thickness."""
 STILL = 1e-7
 """Relative poses that differ by less are the same."""
 
@@ -36,6 +42,7 @@ def inspect(assembly: Assembly, made: dict[str, Solid], tell: Callable[[float], 
         findings += _gaps(assembly, made)
         findings += _fold(assembly, made, tell)
         findings += _axes(assembly)
+        findings += _captive(assembly, made)
     return findings
 
 
@@ -158,6 +165,39 @@ def _axes(assembly: Assembly) -> list[Finding]:
         elif off > limit / 2:
             findings.append(Finding("play", f"{joint.name} gives {off:.2f} mm of its play while folding"))
     return findings
+
+
+def _captive(assembly: Assembly, made: dict[str, Solid]) -> list[Finding]:
+    """No hinge can be pulled apart; hinges of the same kind, radius and width are tried once."""
+    gap = assembly.solution.thickness.gap
+    tried: set[tuple[bool, float, float]] = set()
+    findings = []
+    for joint in assembly.joints:
+        along = joint.axis[1] - joint.axis[0]
+        kind = (joint.is_inserted, round(joint.radius, 3), round(float(np.linalg.norm(along)), 2))
+        if kind in tried:
+            continue
+        tried.add(kind)
+        reach = max(PULL_GAPS * gap, joint.radius)
+        a, b = (made[name] for name in joint.parts)
+        if any(solids.overlap(a, b.translate((way * reach).tolist())) <= HELD for way in _pulls(along)):
+            least = reach / (PULL_GAPS * LOOSEST)
+            text = (
+                f"{joint.name} can be pulled apart, because a clearance of {gap:g} mm is too much for plates of "
+                f"{2 * joint.radius:g} mm; print with a smaller clearance or with plates of {least:.1f} mm or more"
+            )
+            findings.append(Finding("loose", text, is_fatal=True))
+    return findings
+
+
+def _pulls(along: Array) -> list[Array]:
+    """Unit vectors (3,) along an axis both ways, and eight across it."""
+    axis = along / np.linalg.norm(along)
+    side = np.cross(axis, np.eye(3)[int(np.argmin(np.abs(axis)))])
+    side /= np.linalg.norm(side)
+    other = np.cross(axis, side)
+    turns = np.arange(8) * np.pi / 4
+    return [axis, -axis, *(np.cos(t) * side + np.sin(t) * other for t in turns)]
 
 
 def _instants(assembly: Assembly) -> Array:

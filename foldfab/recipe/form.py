@@ -183,9 +183,9 @@ class PrintForm(Form):
     """How the model is to be printed; always in millimetres of the print."""
 
     printer: PrinterChoice = Field(default=DEFAULT_PRINTER.name, description="A known printer or one's own.")
-    thickness: float = Field(default=_PRINT.thickness, ge=1, le=20, description="Thickness of plates and panels, mm.")
+    thickness: float = Field(default=_PRINT.thickness, ge=2, le=20, description="Thickness of plates and panels, mm.")
     clearance: float = Field(
-        default=_PRINT.clearance, ge=0.1, le=1, description="Gap that a hinge is printed with, mm."
+        default=_PRINT.clearance, ge=0.15, le=1, description="Gap that a hinge is printed with, mm."
     )
     posture: Posture = Field(default=_PRINT.posture, description="Whether it is printed open or folded.")
     scale: Scale = Field(default="fit", description="Print size over true size; fit is the largest on the printer.")

@@ -60,8 +60,8 @@ EXPECTED = MappingProxyType(
         "printer": f'one of {", ".join(PRINTERS)}, or {{"name": "mine", "build_volume": [200, 200, 180]}}',
         "build_volume": "three lengths in mm",
         "build_volume[]": f"a length from {SMALLEST:g} to {LARGEST:g} mm",
-        "thickness": "a number of millimetres from 1 to 20",
-        "clearance": "a number of millimetres from 0.1 to 1",
+        "thickness": "a number of millimetres from 2 to 20",
+        "clearance": "a number of millimetres from 0.15 to 1",
         "posture": '"open" or "folded"',
         "scale": '"fit" or a number from 0.00001 to 1000, such as 0.2',
     }

@@ -99,6 +99,7 @@ def _fold(arguments: argparse.Namespace) -> int:
     from foldfab.errors import FoldfabError
 
     progress("looking for the cheapest fold")
+    pipeline.prepare()
     start = time.perf_counter()
     try:
         solution = pipeline.foldabilize(recipe)

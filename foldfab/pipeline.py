@@ -49,6 +49,12 @@ def load(text: str, **overrides: Any) -> Recipe:
     return override(recipe, **overrides) if overrides else recipe
 
 
+def prepare() -> None:
+    """Imports what solving needs, so that a time measured after it is the solver's own."""
+    import foldfab.folding.solve
+    import foldfab.scaffold.abstract  # noqa: F401
+
+
 def foldabilize(recipe: Recipe) -> FoldSolution:
     """The cheapest folding solution of a recipe along its direction, or along the best of six where it names none.
 

@@ -31,6 +31,7 @@ class Pipeline(types.ModuleType):
         self.rows: tuple[Any, ...] = ()
         for name in ("load", "foldabilize", "fabricate", "write", "check", "shipped"):
             setattr(self, name, self._verb(name))
+        self.prepare = lambda: None
 
     def _verb(self, name: str) -> Any:
         def verb(*arguments: Any, **options: Any) -> Any:

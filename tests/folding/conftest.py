@@ -12,7 +12,7 @@ from foldfab.folding import anatomy
 from foldfab.folding.kinematics import configuration
 from foldfab.folding.model import Chain, FoldSolution
 from foldfab.geometry.arrays import Array
-from foldfab.geometry.boxes import Boxes, bounds, close_pairs, grown, moved, stacked
+from foldfab.geometry.boxes import Boxes, bounds, grown, moved, overlaps, stacked
 
 SKIN = 0.03
 """Boxes may share this much, mm: the solver's own tolerance, and a little for times between its samples."""
@@ -57,50 +57,64 @@ def open_normal(chain: Chain) -> Array:
 
 
 def find_collisions(solution: FoldSolution, times: int = TIMES) -> set[tuple[str, str]]:
-    """Pairs of names that meet at any of `times` instants: plates, and chains with their knuckles and feet.
-
-    A chain may touch the plates of its own bases and its own feet.
-    """
-    found: set[tuple[str, str]] = set()
-    for t in np.linspace(0.0, 1.0, times):
-        things = _placed(solution, float(t))
-        for (a, one), (b, other) in itertools.combinations(things, 2):
-            if not _are_kin(solution, a, b) and len(close_pairs(grown(one, -SKIN), grown(other, -SKIN))[0]):
-                found.add((a, b))
-    return found
+    """Pairs of owners that meet at any of `times` instants: plates, chains with their knuckles, and their feet."""
+    things = _placed(solution, np.linspace(0.0, 1.0, times))
+    return {
+        (a, b)
+        for (a, one), (b, other) in itertools.combinations(things, 2)
+        if not _are_kin(solution, a, b) and _ever_meet(grown(one, -SKIN), grown(other, -SKIN))
+    }
 
 
 def find_extent(solution: FoldSolution, t: float) -> tuple[Array, Array]:
     """Lower and upper corners (3,) of all boxes at time t."""
-    low, high = bounds(stacked([boxes for _, boxes in _placed(solution, t)]))
+    low, high = bounds(stacked([boxes[0] for _, boxes in _placed(solution, np.array([t]))]))
     return low.min(0), high.max(0)
 
 
+def _ever_meet(a: Boxes, b: Boxes) -> bool:
+    """Whether any boxes of (times, n) and (times, m) overlap at the same time."""
+    (low_a, high_a), (low_b, high_b) = bounds(a), bounds(b)
+    near = (low_a[:, :, None] <= high_b[:, None]).all(-1) & (low_b[:, None] <= high_a[:, :, None]).all(-1)
+    time, i, j = np.nonzero(near)
+    return bool(overlaps(a[time, i], b[time, j]).any())
+
+
 def _are_kin(solution: FoldSolution, a: str, b: str) -> bool:
-    """Whether two owners may touch: a chain and itself, a chain and the plates of its own bases."""
-    kin = {c.patch: {f"base {c.anchor}", f"base {c.far}", c.patch} for c in solution.chains}
-    return b in kin.get(a, set()) or a in kin.get(b, set())
+    """Whether two owners may touch: feet, and the chain and the plates that they hinge together."""
+    held = {f"{c.patch} foot": {c.patch, f"{c.patch} foot", c.anchor, c.far} for c in solution.chains}
+    return b.removeprefix("base ") in held.get(a, ()) or a.removeprefix("base ") in held.get(b, ())
 
 
-def _placed(solution: FoldSolution, t: float) -> list[tuple[str, Boxes]]:
-    """Owners, and where their boxes are; a plate's owner is `base` and its name."""
-    thick, poses = solution.thickness, configuration(solution, np.array([t]))
-    shift = {base.name: poses[base.name][0, :3, 3] for base in solution.scaffold.bases}
+def _placed(solution: FoldSolution, times: Array) -> list[tuple[str, Boxes]]:
+    """Owners, and where their boxes (times, n) are: `base ground`, `leg` and `leg foot`."""
+    thick, poses = solution.thickness, configuration(solution, times)
+    shift = {base.name: poses[base.name][:, None, :3, 3] for base in solution.scaffold.bases}
     found = [
-        (f"base {base.name}", moved(anatomy.base_boxes(base, thick), shift[base.name]))
+        (f"base {base.name}", _carried(anatomy.base_boxes(base, thick), shift[base.name]))
         for base in solution.scaffold.bases
     ]
     for chain in solution.chains:
-        panels = anatomy.moving_boxes(chain, thick, np.array([progress(solution, chain, t)]))[0]
-        near = stacked([panels, anatomy.anchor_feet(chain, thick)])
-        found.append((chain.patch, moved(near, shift[chain.anchor])))
+        panels = anatomy.moving_boxes(chain, thick, progress(solution, chain, times))
+        found.append((chain.patch, moved(panels, shift[chain.anchor])))
+        found.append((f"{chain.patch} foot", _carried(anatomy.anchor_feet(chain, thick), shift[chain.anchor])))
         if chain.far is not None:
-            found.append((chain.patch, moved(anatomy.far_feet(chain, thick), shift[chain.far])))
+            found.append((f"{chain.patch} foot", _carried(anatomy.far_feet(chain, thick), shift[chain.far])))
     return found
 
 
-def progress(solution: FoldSolution, chain: Chain, t: float) -> float:
-    """Fold progress of a chain at time t, from the step that folds it."""
+def _carried(boxes: Boxes, shift: Array) -> Boxes:
+    """Boxes (n,) that move by a shift (times, 1, 3), as (times, n)."""
+    count = (len(shift), len(boxes))
+    return Boxes(
+        boxes.center + shift,
+        np.broadcast_to(boxes.axes, (*count, 3, 3)),
+        np.broadcast_to(boxes.half, (*count, 3)),
+    )
+
+
+def progress(solution: FoldSolution, chain: Chain, times: Array) -> Array:
+    """Fold progress of a chain at some times, from the step that folds it."""
     step = next(step for step in solution.steps if chain.patch in step.fold)
-    local = (t - step.start) / (step.end - step.start)
-    return float(np.interp(local, step.samples, step.fold[chain.patch]))
+    found: Array = np.interp((times - step.start) / (step.end - step.start), step.samples, step.fold[chain.patch])
+    return found

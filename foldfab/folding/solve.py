@@ -16,6 +16,7 @@ from foldfab.folding.ordering import Ordered, greedy, travel
 from foldfab.folding.rehearsal import first_clash
 from foldfab.folding.scene import Scene, advanced, open_scene
 from foldfab.folding.site import Site, sites, slab
+from foldfab.folding.soundness import disconnected, rigid_patches
 from foldfab.folding.unit_fold import UnitFold
 from foldfab.folding.units import Unit, decompose
 from foldfab.geometry.arrays import Array
@@ -29,12 +30,30 @@ REHEARSALS = 8
 def solve(scaffold: Scaffold) -> FoldSolution:
     """The folding solution of a scaffold by the paper's greedy order, with the thickness of its recipe.
 
+    Where patches must not be split, the scaffold is solved with and without their top ends disconnected.
+
     Raises:
         FoldingError: no order of the units folds the furniture; the message names what stands in the way.
     """
     thickness = Thickness(scaffold.recipe.print.thickness, scaffold.recipe.print.clearance)
     if not scaffold.patches:
         raise FoldingError("nothing folds along this direction: every part lies perpendicular to it already")
+    rigid = rigid_patches(scaffold)
+    if not rigid:
+        return _solved(scaffold, thickness)
+    found: list[FoldSolution] = []
+    refused: list[FoldingError] = []
+    for tried in (scaffold, disconnected(scaffold, rigid, thickness)):
+        try:
+            found.append(_solved(tried, thickness))
+        except FoldingError as error:
+            refused.append(error)
+    if not found:
+        raise refused[-1]
+    return min(found, key=lambda s: (sum(m.is_deleted for m in s.modifications), s.cost))
+
+
+def _solved(scaffold: Scaffold, thickness: Thickness) -> FoldSolution:
     placed = {site.patch.name: site for site in sites(scaffold, thickness)}
     units = decompose(scaffold)
     problem = Problem(scaffold, scaffold.recipe.fold, thickness, placed, *_box(scaffold, thickness, placed))

@@ -19,6 +19,7 @@ from foldfab.folding import anatomy, basic, press
 from foldfab.folding.basic import Option, Variant
 from foldfab.folding.mechanism import reach
 from foldfab.folding.model import Chain, Thickness
+from foldfab.folding.outline import leaves_box, sticks_out
 from foldfab.folding.scene import Scene, Solid, clusters, solids
 from foldfab.folding.site import Site
 from foldfab.folding.space import Sweep, blocked, sweep, window_blocked
@@ -32,11 +33,9 @@ FRAMES = 16
 """Instants of each section of a unit's nominal fold at which clashes are looked for."""
 PAD_SHARE = 0.4
 """Plinths may take at most this share of the height between two bases; beyond it nothing flat is left."""
-EXPANSION = 0.1
-"""In-place folding may stick out of the furniture's outline by this share of its size."""
 DELETION = 100.0
-"""What deleting a patch counts in the search against its cost by eq. 3: nobody wants a shelf without its wall because
-that is cheaper than a hinge. The cost that is reported is the paper's."""
+"""What deleting a patch counts in the search, times its importance, instead of eq. 3: nobody wants a shelf without its
+wall because that is cheaper than a hinge. The cost that is reported is the paper's."""
 PREFERENCE = 1e-6
 """Weight of the preferences that decide between options of equal cost: small plinths, staying within the outline."""
 
@@ -49,10 +48,8 @@ class Problem:
     options: FoldOptions
     thickness: Thickness
     sites: Mapping[str, Site]
-    low: Array
-    """(3,) lower corner of the open furniture with thickness, mm."""
-    high: Array
-    """(3,) upper corner."""
+    furniture: Boxes
+    """(n,) the open furniture with thickness."""
     sweeps: dict[tuple[str, str, Variant], tuple[Chain, Sweep, Array] | None] = field(default_factory=dict)
     """Sweeps that were made already, by unit, patch and variant."""
     pairs: dict[tuple[str, str, Variant, str, Variant], Bools] = field(default_factory=dict)
@@ -94,6 +91,10 @@ class Surroundings:
     """(n, 3)."""
     high: Array
     """(n, 3)."""
+    offset: Array
+    """(3,) how far the unit has been carried since the open posture."""
+    root: str
+    """The unit's base that moves with the furniture's lowest base."""
 
 
 def surroundings(problem: Problem, scene: Scene, unit: Unit) -> Surroundings:
@@ -102,7 +103,9 @@ def surroundings(problem: Problem, scene: Scene, unit: Unit) -> Surroundings:
     found = [replace(s, boxes=replace(s.boxes, center=s.boxes.center - shift)) for s in solids(scene, unit)]
     boxes = stacked([s.boxes for s in found])
     owner = tuple(i for i, s in enumerate(found) for _ in range(len(s.boxes)))
-    return Surroundings(tuple(found), clusters(scene, unit), boxes, owner, *bounds(boxes))
+    cluster = clusters(scene, unit)
+    root = cluster[problem.scaffold.bases[0].name]
+    return Surroundings(tuple(found), cluster, boxes, owner, *bounds(boxes), shift, root)
 
 
 def candidates(problem: Problem, unit: Unit, around: Surroundings, *, in_place: bool) -> dict[str, list[Candidate]]:
@@ -133,7 +136,8 @@ def variants(problem: Problem, site: Site, *, may_slant: bool) -> tuple[Variant,
 
 def seen_from(problem: Problem, unit: Unit) -> dict[str, tuple[Array, Array]]:
     """By base of the unit, lower and upper corner (3,) of everything its chains sweep, relative to that base."""
-    if unit.name not in problem.room:
+    key = _key(unit)
+    if key not in problem.room:
         down, found = _nominal(problem, unit), {}
         for base in unit.bases:
             corners = []
@@ -146,8 +150,8 @@ def seen_from(problem: Problem, unit: Unit) -> dict[str, tuple[Array, Array]]:
             low = np.min([c[0] for c in corners], axis=0) if corners else np.full(3, np.inf)
             high = np.max([c[1] for c in corners], axis=0) if corners else np.full(3, -np.inf)
             found[base] = (low, high)
-        problem.room[unit.name] = found
-    return problem.room[unit.name]
+        problem.room[key] = found
+    return problem.room[key]
 
 
 def _relative(made: tuple[Chain, Sweep, Array], base: str, down: Mapping[str, Array]) -> tuple[Array, Array]:
@@ -174,7 +178,7 @@ def options(problem: Problem, site: Site, many: list[Candidate], offset: Array) 
             price = site.importance * basic.cost(candidate.variant.hinges, kept, problem.options)
             made.append((Option(candidate.variant, window, price), price + extra))
     price = site.importance * basic.cost(0, 0.0, problem.options)
-    made.append((Option(None, (0, 0), price), DELETION * price))
+    made.append((Option(None, (0, 0), price), DELETION * site.importance))
     return made
 
 
@@ -209,7 +213,7 @@ def _candidate(problem: Problem, unit: Unit, around: Surroundings, site: Site, v
     pieces, met = blocked(swept, others) if others is not None else (np.zeros(len(swept.cuts) - 1, dtype=bool), ())
     keep = _kept(around, chain)
     owners = tuple(sorted({around.solids[around.owner[keep[i]]].owner for i in met}))
-    if _leaves_box(problem, variant, swept):
+    if _is_out(problem, unit, around, chain, swept, shift):
         pieces = np.ones_like(pieces)
         owners = (*owners, "the bounding box")
     return Candidate(variant, chain, swept, pieces, owners)
@@ -217,7 +221,7 @@ def _candidate(problem: Problem, unit: Unit, around: Surroundings, site: Site, v
 
 def _swept(problem: Problem, unit: Unit, site: Site, variant: Variant) -> tuple[Chain, Sweep, Array] | None:
     """The chain, its sweep and the (frames, 3) shift of its far end, made once."""
-    key = (unit.name + "/".join(unit.patches), site.patch.name, variant)
+    key = (_key(unit), site.patch.name, variant)
     if key not in problem.sweeps:
         problem.sweeps[key] = _sweep_of(problem, unit, site, variant)
     return problem.sweeps[key]
@@ -348,26 +352,40 @@ def _needed_pads(
     return (pads[0], pads[1])
 
 
-def _leaves_box(problem: Problem, variant: Variant, swept: Sweep) -> bool:
-    """In-place folding incurs no horizontal expansion (section 5.3), but for what a leaning patch sticks out; nothing
-    leaves the box at all where that is asked for.
-    """
-    slack = np.full(3, problem.thickness.panel / 2 + problem.thickness.gap)
+def _is_out(problem: Problem, unit: Unit, around: Surroundings, chain: Chain, swept: Sweep, far: Array) -> bool:
+    if chain.mechanism == "in-place" and sticks_out(problem.furniture, chain, swept, problem.thickness):
+        return True
     if not problem.options.stay_in_box:
-        if variant.mechanism != "in-place":
-            return False
-        slack = np.array([*np.maximum(slack, EXPANSION * (problem.high - problem.low))[:2], np.inf])
-    return bool(((swept.low < problem.low - slack) | (swept.high > problem.high + slack)).any())
+        return False
+    down = _nominal(problem, unit)
+    shift = {b: np.stack([0 * d, 0 * d, d], axis=1) for b, d in down.items()}
+    if chain.far is not None:
+        shift[chain.far] = far
+    held = {base: _bounds_of(around, base) for base in unit.bases}
+    return leaves_box(problem.furniture, swept, held, shift, around.offset, around.root, problem.thickness)
+
+
+def _bounds_of(around: Surroundings, base: str) -> tuple[Array, Array]:
+    """Lower and upper corner (3,) of what moves with a base of the unit."""
+    own = [i for i, s in enumerate(around.owner) if around.cluster[around.solids[s].base] == base]
+    return around.low[own].min(0), around.high[own].max(0)
+
+
+def _key(unit: Unit) -> str:
+    """Tells units apart, merged ones too."""
+    return "/".join(unit.patches)
 
 
 def _awkwardness(problem: Problem, candidate: Candidate, offset: Array) -> float:
     """How far a candidate carries things out of the open furniture and how high its plinths are, relative."""
-    size = float(np.linalg.norm(problem.high - problem.low))
+    corners = bounds(problem.furniture)
+    least, most = corners[0].min(0), corners[1].max(0)
+    size = float(np.linalg.norm(most - least))
     low, high = candidate.sweep.low.min((0, 1)), candidate.sweep.high.max((0, 1))
     if candidate.chain.far is not None:
         plate = anatomy.base_boxes(problem.scaffold.base(candidate.chain.far), problem.thickness)
         ends = reach(candidate.chain, np.array([0.0, 1.0])) @ np.stack([candidate.chain.across, candidate.chain.rise])
-        corners = bounds(moved(plate, ends[1] - ends[0]))
-        low, high = np.minimum(low, corners[0].min(0)), np.maximum(high, corners[1].max(0))
-    out = np.maximum(problem.low - low - offset, 0) + np.maximum(high + offset - problem.high, 0)
+        landed = bounds(moved(plate, ends[1] - ends[0]))
+        low, high = np.minimum(low, landed[0].min(0)), np.maximum(high, landed[1].max(0))
+    out = np.maximum(least - low - offset, 0) + np.maximum(high + offset - most, 0)
     return float(out.sum() + 2 * sum(candidate.variant.pads)) / size

@@ -13,11 +13,10 @@ from foldfab.folding.basic import Option, windows
 from foldfab.folding.candidates import Candidate, Problem
 from foldfab.folding.mechanism import peak, reach
 from foldfab.folding.model import Chain, Thickness
+from foldfab.folding.press import play_limit
 from foldfab.folding.space import conflicts, window_conflicts
 from foldfab.geometry.arrays import Array, Bools
 
-PLAY_SHARE = 0.45
-"""Share of the clearance that one hinge may give."""
 SAME_PLACE = 1e-3
 """Two slanted chains drag their upper base alike where the ends differ by less, mm."""
 
@@ -43,11 +42,6 @@ def conflict_table(
     return table
 
 
-def play_limit(chain: Chain, thickness: Thickness) -> float:
-    """How far the hinges of a chain can give all together, mm."""
-    return PLAY_SHARE * thickness.gap * (len(chain.lengths) + 1)
-
-
 def go_the_same_way(a: Chain, b: Chain) -> bool:
     """Whether two chains drag their bases along the same way (condition ii of section 5.2)."""
     if not _share_bases(a, b):
@@ -61,7 +55,7 @@ def snap_alike(a: Chain, b: Chain, thickness: Thickness) -> bool:
     """Whether the play in their hinges covers the difference between the snaps of two chains."""
     if not _share_bases(a, b) or a.mechanism != "in-place" or b.mechanism != "in-place":
         return True
-    return abs(peak(a)[0] - peak(b)[0]) <= play_limit(a, thickness) + play_limit(b, thickness)
+    return abs(peak(a)[0] - peak(b)[0]) <= play_limit(a, thickness.gap) + play_limit(b, thickness.gap)
 
 
 def _share_bases(a: Chain, b: Chain) -> bool:

@@ -18,12 +18,18 @@ import numpy as np
 
 from foldfab.folding.mechanism import peak, reach
 from foldfab.folding.model import Chain
-from foldfab.geometry.arrays import Array, Bools, Indices
+from foldfab.geometry.arrays import Array, Indices
 
 SAME_LEVEL = 1e-6
 """Bases whose ways differ by less start together, mm."""
+PLAY_SHARE = 0.45
+"""Share of the clearance that one hinge may give."""
 SAMPLES = 48
 """Samples of each section of a unit's fold."""
+SETTLED = 4
+"""Chains that snap differently move alike again when the leader has come this many times as far as to its snap."""
+CLIMB = 10
+"""Samples up to the snap."""
 TABLE = 385
 """Samples of the table by which a chain's motion is inverted."""
 
@@ -61,21 +67,24 @@ def ways(bases: tuple[str, ...], least: Mapping[tuple[str, str], float], clear: 
     return way
 
 
-def in_place(bases: tuple[str, ...], way: Mapping[str, float], chains: tuple[Chain, ...]) -> Motion:
-    """The motion of a unit whose bases come straight down; T-scaffolds fold evenly meanwhile."""
+def in_place(bases: tuple[str, ...], way: Mapping[str, float], chains: tuple[Chain, ...], gap: float) -> Motion:
+    """The motion of a unit whose bases come straight down; T-scaffolds fold evenly meanwhile.
+
+    `gap` is the clearance, by which hinges can give where chains snap differently.
+    """
     held = [c for c in chains if c.far is not None]
     tips = [c for c in chains if c.far is None]
     levels = _levels([way[b] for b in bases if way[b] > SAME_LEVEL]) if held else []
     if not levels:
         return _tips_only(bases, tips)
-    sections = [_section(i, levels, way, held) for i in range(len(levels))]
+    sections = [_section(i, levels, way, held, gap) for i in range(len(levels))]
     press = np.concatenate([s.press for s in sections])
     index = np.concatenate([np.full(len(s.press), i) for i, s in enumerate(sections)])
-    lead = np.concatenate([s.rising for s in sections])
+    climb = np.concatenate([s.climb for s in sections])
     down = {b: _shift(b, way, levels, press, index) for b in bases}
     fold, play = {}, {}
     for chain in held:
-        fold[chain.patch], play[chain.patch] = _follow(chain, sections, down, lead, index)
+        fold[chain.patch], play[chain.patch] = _follow(chain, sections, down, climb, index)
     path = sum(s.path for s in sections)
     samples = _times(sections)
     for chain in tips:
@@ -96,6 +105,11 @@ def slanted(bases: tuple[str, ...], chains: tuple[Chain, ...]) -> Motion:
     return Motion(s, shift, {c.patch: s for c in chains}, {c.patch: np.zeros_like(s) for c in chains}, path)
 
 
+def play_limit(chain: Chain, gap: float) -> float:
+    """How far the hinges of a chain can give all together, mm, for a clearance `gap`."""
+    return PLAY_SHARE * gap * (len(chain.lengths) + 1)
+
+
 def follow_down(chain: Chain, drop: Array) -> Array:
     """Progress (k,) at which the chain's far end has come down by `drop` (k,) mm, on the falling side of its snap."""
     s = np.linspace(0.0, 1.0, TABLE)
@@ -113,10 +127,8 @@ class _Section:
     leader: Chain
     progress: Array
     press: Array
-    rising: Bools
-    """(k,) whether the leader is still before its snap."""
-    is_exact: bool
-    """Whether the press follows the leader to the letter."""
+    climb: Array
+    """(k,) 0 where the section starts, 1 where the last of the starting chains snaps, and more beyond."""
     path: float
 
 
@@ -132,7 +144,7 @@ def _starts_at(chain: Chain, way: Mapping[str, float], level: float) -> bool:
     return chain.far is not None and abs(way[chain.far] - level) <= SAME_LEVEL
 
 
-def _section(i: int, levels: list[float], way: Mapping[str, float], held: list[Chain]) -> _Section:
+def _section(i: int, levels: list[float], way: Mapping[str, float], held: list[Chain], gap: float) -> _Section:
     starting = [c for c in held if _starts_at(c, way, levels[i])]
     leader = _leader(starting or [c for c in held if _is_folding(c, way, levels[i])], way)
     until = levels[i + 1] if i + 1 < len(levels) else 0.0
@@ -140,18 +152,35 @@ def _section(i: int, levels: list[float], way: Mapping[str, float], held: list[C
     is_done = until - way[leader.anchor] <= SAME_LEVEL
     begin = 0.0 if starting else float(follow_down(leader, np.array([whole - levels[i]]))[0])
     end = 1.0 if is_done else float(follow_down(leader, np.array([whole - until]))[0])
-    rise, at = peak(leader)
-    s = np.linspace(begin, end, SAMPLES + 1)
-    if begin < at < end:
-        s = np.unique(np.concatenate([s, np.linspace(0.0, min(2 * at, end), 9)]))
+    snaps = [peak(c) for c in starting]
+    crest = max((place for _, place in snaps), default=0.0)
+    rise, at = peak(leader) if starting else (0.0, begin)
+    climb = np.linspace(0.0, 1.0, CLIMB + 1)[:-1] if crest > 0 else np.zeros(0)
+    down = np.linspace(at, end, SAMPLES + 1)
+    if crest > 0:
+        down = np.unique(np.concatenate([down, np.linspace(at, min(at + (SETTLED - 1) * crest, end), 4 * SETTLED)]))
+    s = np.concatenate([at * climb, down])
+    climb = np.concatenate([climb, 1 + (down - at) / crest if crest > 0 else np.full(len(down), np.inf)])
     height = reach(leader, s)[:, 1]
     press = whole + height - reach(leader, np.zeros(1))[0, 1]
-    peaks = [peak(c)[0] for c in starting] or [rise]
-    excess = rise - (min(peaks) + max(peaks)) / 2
-    if at > 0 and starting:
-        press -= excess * np.clip(1 - ((s - at) / np.where(s < at, at, 3 * at)) ** 2, 0, None) ** 2
+    if crest > 0:
+        shared = _shared_rise([r for r, _ in snaps], [play_limit(c, gap) for c in starting])
+        press += (shared - rise) * np.where(climb < 1, climb**2 * (3 - 2 * climb), _fade(climb))
     path = float(leader.lengths.max()) * np.pi / 2 * (end - begin) * len(leader.lengths)
-    return _Section(leader, s, press, (s < at) & bool(starting), bool(starting) and abs(excess) < 1e-9, path)
+    return _Section(leader, s, press, climb, path)
+
+
+def _fade(climb: Array) -> Array:
+    """1 at the snap, 0 where all chains are past it."""
+    faded: Array = np.clip(1 - (climb - 1) / (SETTLED - 1), 0.0, 1.0) ** 2
+    return faded
+
+
+def _shared_rise(rises: list[float], limits: list[float]) -> float:
+    """How far bases rise so that the play of every chain, as a share of what it can give, stays small."""
+    least = max(r - limit for r, limit in zip(rises, limits, strict=True))
+    most = min(r + limit for r, limit in zip(rises, limits, strict=True))
+    return rises[0] if len(set(np.round(rises, 9))) == 1 else (least + most) / 2
 
 
 def _leader(many: list[Chain], way: Mapping[str, float]) -> Chain:
@@ -169,24 +198,28 @@ def _shift(base: str, way: Mapping[str, float], levels: list[float], press: Arra
 
 
 def _follow(
-    chain: Chain, sections: list[_Section], down: Mapping[str, Array], rising: Bools, index: Indices
+    chain: Chain, sections: list[_Section], down: Mapping[str, Array], climb: Array, index: Indices
 ) -> tuple[Array, Array]:
-    """Progress and play of one chain, given how its two bases move."""
+    """Progress and play of one chain, given how its two bases move.
+
+    While the section that it starts in climbs, so does the chain, to its own snap; after it, what its snap is higher
+    than the press fades away, so that no chain ever jumps.
+    """
     assert chain.far is not None
     drop = down[chain.anchor] - down[chain.far]
     s = np.linspace(0.0, 1.0, TABLE)
     height = reach(chain, s)[:, 1] - reach(chain, np.zeros(1))[0, 1]
     top = int(np.argmax(height))
-    found = np.interp(drop, -np.minimum.accumulate(height[top:]), s[top:])
     moving = np.nonzero(np.abs(drop) > 1e-9)[0]
     own = int(index[moving[0]]) if len(moving) else 0
-    found = np.where(index < own, 0.0, found)
-    if top:
-        climbing = rising & (index == own)
-        found[climbing] = np.interp(-drop[climbing], np.maximum.accumulate(height[: top + 1]), s[: top + 1])
-    section = sections[own]
-    if section.is_exact and _is_twin(chain, section.leader):
-        found[index == own] = section.progress
+    is_own, fade = index == own, _fade(climb)
+    crest = float((-drop[is_own]).max()) if top else 0.0
+    lifted = -drop + np.where(is_own, (height[top] - crest) * fade, 0.0)
+    found = np.interp(-lifted, -np.minimum.accumulate(height[top:]), s[top:])
+    found = np.where(is_own & (climb < 1), s[top] * np.clip(climb, 0.0, 1.0), found)
+    if _is_twin(chain, sections[own].leader):
+        found[is_own] = sections[own].progress
+    found = np.maximum.accumulate(np.where(index < own, 0.0, found))
     found[-1] = 1.0
     return found, -drop - (reach(chain, found)[:, 1] - reach(chain, np.zeros(1))[0, 1])
 
@@ -201,11 +234,13 @@ def _is_twin(a: Chain, b: Chain) -> bool:
 
 
 def _times(sections: list[_Section]) -> Array:
-    steps = [
-        np.diff(s.progress, prepend=s.progress[0]) * s.path / max(float(np.ptp(s.progress)), 1e-9) for s in sections
-    ]
-    for step in steps[1:]:
-        step[0] = 1e-6 * float(step.sum())
+    steps = []
+    for section in sections:
+        # A leader without a snap of its own stands still while the others climb.
+        step = np.diff(section.progress, prepend=section.progress[0])
+        step = np.maximum(step, 1e-4)
+        steps.append(step * section.path / float(step.sum()))
+    steps[0][0] = 0.0
     clock = np.cumsum(np.concatenate(steps))
     times: Array = clock / clock[-1]
     return times

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import networkx as nx
 import numpy as np
@@ -11,7 +12,7 @@ import numpy as np
 from foldfab.folding import basic, press
 from foldfab.folding.basic import Option, Variant
 from foldfab.folding.candidates import PAD_SHARE, Problem, Surroundings, clearances, levels
-from foldfab.folding.conflict import play_limit
+from foldfab.folding.mechanism import peak
 from foldfab.folding.model import Chain
 from foldfab.folding.press import Motion
 from foldfab.folding.scene import Scene
@@ -30,8 +31,8 @@ class Clash:
     patches: tuple[tuple[str, ...], ...]
     """Sets of patches whose options must not be taken together again."""
     reason: str
-    is_geometric: bool = False
-    """Whether parts met, so that wider windows of the same patches would meet as well."""
+    holds_for: Literal["this", "wider windows", "any window"] = "this"
+    """Which other options it rules out: where parts meet, wider windows of the same patches meet as well."""
 
 
 def realised(
@@ -56,15 +57,28 @@ def _played(
 ) -> tuple[tuple[Chain, ...], Motion] | Clash:  # fmt: skip
     """The chains with their motion, or what meets while they fold."""
     is_slanted = any(c.mechanism == "slanted" and c.far is not None for c in chains)
-    motion = press.slanted(unit.bases, chains) if is_slanted else press.in_place(unit.bases, way, chains)
+    motion = (
+        press.slanted(unit.bases, chains)
+        if is_slanted
+        else press.in_place(unit.bases, way, chains, problem.thickness.gap)
+    )
     for chain in chains:
-        if np.abs(motion.play[chain.patch]).max() > play_limit(chain, problem.thickness):
-            return Clash((tuple(chosen),), f"{chain.patch} cannot follow the other chains of its unit")
+        if np.abs(motion.play[chain.patch]).max() > press.play_limit(chain, problem.thickness.gap):
+            beside = _most_unlike(chain, chains)
+            blamed = (chain.patch, beside) if beside else tuple(chosen)
+            return Clash((blamed,), f"{chain.patch} cannot follow {beside or 'its unit'}", holds_for="any window")
     met = list(clashes(chains, motion, around, problem.thickness))
     if met:
         mine = [tuple(p for p in pair if p in chosen) or tuple(chosen) for pair in met]
-        return Clash(tuple(dict.fromkeys(mine)), f"{met[0][0]} meets {met[0][1]}", is_geometric=True)
+        return Clash(tuple(dict.fromkeys(mine)), f"{met[0][0]} meets {met[0][1]}", holds_for="wider windows")
     return chains, motion
+
+
+def _most_unlike(chain: Chain, chains: tuple[Chain, ...]) -> str:
+    """The patch between the same bases whose snap differs most, or nothing."""
+    others = [c for c in chains if c is not chain and {c.anchor, c.far} == {chain.anchor, chain.far}]
+    own = peak(chain)[0]
+    return max(others, key=lambda c: (abs(peak(c)[0] - own), c.patch)).patch if others else ""
 
 
 def _balanced(
@@ -94,7 +108,10 @@ def _balanced(
         span = basic.window_span(site, chosen[patch].window, problem.options.shrink_steps, thick)
         chain = basic.chain(site, variant, span, thick) if span is not None else None
         if chain is None or sum(variant.pads) > PAD_SHARE * site.clear:
-            return Clash(((patch,),), f"{patch} is too short to end flat on a plinth of {sum(variant.pads):.1f} mm")
+            highest = max((p for p in stacks if problem.sites[p].far == site.far), key=lambda p: (stacks[p], p))
+            blamed = (patch,) if highest == patch else (patch, highest)
+            text = f"{patch} is too short to end flat on a plinth of {sum(variant.pads):.1f} mm beside {highest}"
+            return Clash((blamed,), text, holds_for="any window")
         chains.append(chain)
     return tuple(chains), way
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import networkx as nx
+import numpy as np
 
 from foldfab.folding.anatomy import faces
 from foldfab.folding.model import Thickness
@@ -42,7 +43,9 @@ def _hangs_together(scaffold: Scaffold, loose: set[str]) -> bool:
 def _cut_at_top(scaffold: Scaffold, patch: Patch, thickness: Thickness) -> Patch:
     """The patch as a T-scaffold on its lower base, a gap short of its upper one."""
     assert patch.upper is not None
-    top = faces(scaffold.base(patch.upper), thickness).bottom - thickness.gap
+    # The end of a leaning panel has a corner that stands higher than its middle.
+    corner = thickness.panel / 2 * float(np.hypot(patch.up[0], patch.up[1]))
+    top = faces(scaffold.base(patch.upper), thickness).bottom - thickness.gap - corner
     taken = float(patch.center[2] + patch.up[2] * patch.length / 2 - top) / float(patch.up[2])
     center = patch.center - patch.up * taken / 2
     return replace(patch, center=center, length=patch.length - taken, upper=None)

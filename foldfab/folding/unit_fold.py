@@ -111,7 +111,7 @@ def _fold(
 def _tables(
     problem: Problem, unit: Unit, found: Mapping[str, list[Candidate]], priced: Priced
 ) -> dict[tuple[int, int], Bools]:
-    key = unit.name + "/".join(unit.patches)
+    key = "/".join(unit.patches)
     made = {}
     for (g, a), (h, b) in itertools.combinations(enumerate(unit.patches), 2):
         first, second = ((found[p], [o for o, _ in priced[p]]) for p in (a, b))
@@ -131,7 +131,7 @@ def _learn(
     for patches in clash.patches:
         groups = sorted(unit.patches.index(p) for p in patches)
         concerned |= set(groups)
-        alike = [_at_least_as_wide(priced[unit.patches[g]], picked[g], is_exact=not clash.is_geometric) for g in groups]
+        alike = [_alike(priced[unit.patches[g]], picked[g], clash) for g in groups]
         if len(groups) == 1:
             costs[groups[0]][alike[0]] = np.inf
         elif len(groups) == 2:
@@ -141,12 +141,12 @@ def _learn(
     return concerned
 
 
-def _at_least_as_wide(many: list[tuple[Option, float]], index: int, *, is_exact: bool) -> list[int]:
-    """The options of a patch that fold like the one at `index` and keep at least its window."""
+def _alike(many: list[tuple[Option, float]], index: int, clash: Clash) -> list[int]:
+    """The options of a patch that a clash of the one at `index` rules out as well."""
     own = many[index][0]
-    if is_exact or own.variant is None:
+    if clash.holds_for == "this" or own.variant is None:
         return [index]
-    low, high = own.window
+    low, high = own.window if clash.holds_for == "wider windows" else (np.inf, -np.inf)
     return [
         i for i, (o, _) in enumerate(many) if o.variant == own.variant and o.window[0] <= low and o.window[1] >= high
     ]

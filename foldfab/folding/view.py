@@ -58,6 +58,8 @@ def view(problem: Problem, unit: Unit, around: Surroundings, limits: Limits) -> 
         relevant |= near & (base == name)
     if is_slantable(problem, unit):
         relevant |= _crossing(problem, unit, around, base)
+    if problem.options.stay_in_box:
+        relevant[:] = True
     labels = tuple(
         (around.solids[around.owner[i]].owner, around.solids[around.owner[i]].state) for i in np.nonzero(relevant)[0]
     )
@@ -67,7 +69,8 @@ def view(problem: Problem, unit: Unit, around: Surroundings, limits: Limits) -> 
         (pair, round(min(flat, clear[pair]), 4), (round(up, 4), owner) if up < clear[pair] else None)
         for pair, (flat, up, owner) in limits.items()
     )
-    return (labels, shape.tobytes(), numbers)
+    place = tuple(np.round(around.offset, 4)) if problem.options.stay_in_box else None
+    return (labels, shape.tobytes(), numbers, place)
 
 
 def _crossing(problem: Problem, unit: Unit, around: Surroundings, base: Array) -> Bools:

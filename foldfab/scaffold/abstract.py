@@ -39,8 +39,10 @@ def abstract(recipe: Recipe, direction: Array, scale: float) -> Scaffold:
     stub = STUB_THICKNESSES * thickness
     layout = find_bases(tuple(s for s in parts if s.is_base), leaves, tolerance, stub)
     if not layout.bases:
+        names = tuple(s.name for s in parts)
         raise AbstractionError(
-            "no part and no joint of parts is perpendicular to the folding direction, so there is no base"
+            f"neither {_listed(names)} nor a joint of parts is perpendicular to the folding direction: no base",
+            names,
         )
     patches, notes = cut(leaves, layout, stub)
     _require_attached(recipe, patches, parts, layout.bases)

@@ -8,7 +8,7 @@ with a part, or with at least two lines, is a base patch; a single line is the t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import networkx as nx
 import numpy as np
@@ -26,7 +26,7 @@ ALIGNED = np.cos(np.radians(10.0))
 """Ends of two sheets join where they run this parallel."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, order=True)
 class Line:
     """A horizontal line of a sheet: one of its ends, or where a base crosses it."""
 
@@ -133,19 +133,26 @@ def _strips(leaves: tuple[Sheet, ...], lines: list[Line], height: float) -> Boxe
 
 
 def _layout(graph: nx.Graph[object], parts: tuple[Segment, ...], leaves: tuple[Sheet, ...]) -> Layout:
-    bases: list[BasePatch] = []
-    owned: dict[int, list[tuple[Line, str]]] = {i: [] for i in range(len(leaves))}
+    found: list[tuple[BasePatch, list[Line]]] = []
     for component in nx.connected_components(graph):
         members = sorted(n for n in component if isinstance(n, int))
         lines = sorted((n for n in component if isinstance(n, Line)), key=lambda n: (n.sheet, n.height))
-        if not members and len(lines) < 2:
-            continue
-        base = _base(graph, [parts[j] for j in members], members, lines, leaves)
-        bases.append(base)
+        if members or len(lines) > 1:
+            found.append((_base(graph, [parts[j] for j in members], members, lines, leaves), lines))
+    floor = min((base.bottom for base, _ in found), default=0.0)
+    found.sort(key=lambda f: (round(f[0].bottom - floor, 6), f[0].name, f[1]))
+    taken = {part for leaf in leaves for part in leaf.parts}
+    bases: list[BasePatch] = []
+    owned: dict[int, list[tuple[Line, str]]] = {i: [] for i in range(len(leaves))}
+    for base, lines in found:
+        name = base.name
+        while name in taken:
+            name += "'"
+        taken.add(name)
+        bases.append(replace(base, name=name))
         for line in lines:
-            owned[line.sheet].append((line, base.name))
-    order = tuple(sorted(bases, key=lambda b: (b.bottom, b.name)))
-    return Layout(order, {i: tuple(sorted(own, key=lambda o: o[0].height)) for i, own in owned.items()})
+            owned[line.sheet].append((line, name))
+    return Layout(tuple(bases), {i: tuple(sorted(own, key=lambda o: o[0].height)) for i, own in owned.items()})
 
 
 def _base(
@@ -158,7 +165,7 @@ def _base(
     if parts:
         name = max(parts, key=lambda p: (float(np.prod(np.sort(p.half)[1:])), p.name)).name
     else:
-        name = "+".join(sorted({leaves[line.sheet].parts[0] for line in lines})[:3]) + f"@{lines[0].height:.0f}"
+        name = "+".join(sorted({leaves[line.sheet].parts[0] for line in lines})[:3])
     return BasePatch(name, tuple(sorted(p.name for p in parts)), min(heights), max(heights), tuple(outlines))
 
 

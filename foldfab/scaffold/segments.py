@@ -21,6 +21,8 @@ PLATE_TILT = np.radians(26.0)
 """A plate this close to perpendicular to d still counts as perpendicular (slightly tilted seats)."""
 ROD_TILT = np.radians(8.0)
 """The same for a rod's axis."""
+UPRIGHT = 1e-6
+"""Sine of the tilt below which a rod stands upright."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,11 +65,9 @@ def sheet(segment: Segment) -> tuple[Array, Array, float, float, float]:
         along (3,), up (3,), and the full width, length and thickness in mm: the tight rectangle around the
         part in the plane that contains `along` (perpendicular to d) and rises most steeply.
     """
-    normal = segment.axes[_normal(segment)]
-    along = np.cross([0.0, 0.0, 1.0], normal)
-    along /= np.linalg.norm(along)
-    up = np.cross(normal, along)
-    up = up if up[2] > 0 else -up
+    along = _hinge_direction(segment)
+    up = _rising(segment, along)
+    normal = np.cross(along, up)
     extent = 2 * np.abs(segment.axes @ np.stack([along, up, normal]).T).T @ segment.half
     return along, up, float(extent[0]), float(extent[1]), float(extent[2])
 
@@ -78,23 +78,33 @@ def _segment(part: Part, turn: Array, scale: float) -> Segment:
 
 
 def _is_perpendicular(axes: Array, half: Array) -> bool:
-    thin, middle, long = np.argsort(half, kind="stable")
-    if half[long] > ROD_RATIO * half[middle] and half[middle] < ROD_RATIO * half[thin]:
+    thin, _, long = np.argsort(half, kind="stable")
+    if _is_rod(half):
         return bool(abs(axes[long, 2]) < np.sin(ROD_TILT))
     return bool(abs(axes[thin, 2]) > np.cos(PLATE_TILT))
 
 
-def _normal(segment: Segment) -> int:
-    """Which axis is normal to the medial sheet: the thinnest, and for a rod the one that is least upright of the
-    two thin ones when turned so that the hinge direction is horizontal.
-    """
-    thin, middle, long = np.argsort(segment.half, kind="stable")
-    half = segment.half
-    is_rod = half[long] > ROD_RATIO * half[middle] and half[middle] < ROD_RATIO * half[thin]
-    if not is_rod:
-        return int(thin)
-    # The other thin axis becomes the hinge direction, so it must be the more horizontal one of the two.
-    level = {axis: abs(segment.axes[axis, 2]) for axis in (thin, middle)}
-    if abs(level[thin] - level[middle]) < 1e-6:
-        return int(thin)
-    return int(max((thin, middle), key=lambda axis: level[axis]))
+def _is_rod(half: Array) -> bool:
+    thin, middle, long = np.sort(half)
+    return bool(long > ROD_RATIO * middle and middle < ROD_RATIO * thin)
+
+
+def _hinge_direction(segment: Segment) -> Array:
+    """(3,) horizontal: along the sheet of a plate; across the axis of a rod, of which it spans the sheet with it."""
+    thin, _, long = np.argsort(segment.half, kind="stable")
+    guide = segment.axes[long] if _is_rod(segment.half) else segment.axes[thin]
+    along = np.cross([0.0, 0.0, 1.0], guide)
+    if np.linalg.norm(along) < UPRIGHT:
+        # An upright rod folds about its wider side.
+        along = np.cross([0.0, 0.0, 1.0], segment.axes[thin])
+    unit: Array = along / np.linalg.norm(along)
+    return unit
+
+
+def _rising(segment: Segment, along: Array) -> Array:
+    """(3,) the direction in the sheet, perpendicular to `along`, that goes up."""
+    thin, _, long = np.argsort(segment.half, kind="stable")
+    up = segment.axes[long] if _is_rod(segment.half) else np.cross(segment.axes[thin], along)
+    up = up - (up @ along) * along
+    unit: Array = up / np.linalg.norm(up) * np.sign(up[2])
+    return unit

@@ -17,15 +17,23 @@ def cut(leaves: tuple[Sheet, ...], layout: Layout, stub: float) -> tuple[tuple[P
     """
     patches: list[Patch] = []
     notes: list[str] = []
+    taken = {p for leaf in leaves for p in leaf.parts} | {p for b in layout.bases for p in (b.name, *b.parts)}
     for index, leaf in enumerate(leaves):
         pieces = [p for p in _pieces(leaf, index, layout) if p[1] - p[0] >= stub or (p[2] and p[3])]
         movable = [p for p in pieces if p[2] != p[3]]
         if len(movable) < len(pieces):
             notes.append(f"{leaf.parts[0]} stays rigid where both its ends belong to the same base")
         for number, piece in enumerate(movable, 1):
-            name = leaf.parts[0] if len(movable) == 1 else f"{leaf.parts[0]}.{number}"
+            name = leaf.parts[0] if len(movable) == 1 else _new_name(f"{leaf.parts[0]}.{number}", taken)
             patches.append(_patch(name, leaf, *piece))
     return tuple(sorted(patches, key=lambda p: p.name)), tuple(notes)
+
+
+def _new_name(name: str, taken: set[str]) -> str:
+    while name in taken:
+        name += "'"
+    taken.add(name)
+    return name
 
 
 def _pieces(leaf: Sheet, index: int, layout: Layout) -> list[tuple[float, float, str | None, str | None]]:

@@ -34,7 +34,6 @@ def test_an_unhingeable_wall_that_may_not_slant_is_named(solution: Make, furnitu
         solution(rigid(furniture["h_scaffold"]), slanting=False)
 
 
-@pytest.mark.xfail(strict=True, reason="the message says that the patch is too short, which it is not")
 def test_an_unhingeable_wall_that_may_not_slant_is_not_called_too_short(solution: Make, furniture: Parts) -> None:
     with pytest.raises(FoldingError) as caught:
         solution(rigid(furniture["h_scaffold"]), slanting=False)

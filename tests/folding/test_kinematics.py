@@ -11,10 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from foldfab.folding import anatomy
-from foldfab.folding.conflict import PLAY_SHARE
 from foldfab.folding.kinematics import configuration, folded_size, key_times
 from foldfab.folding.mechanism import joints, tilts
 from foldfab.folding.model import Chain, FoldSolution
+from foldfab.folding.press import PLAY_SHARE
 from foldfab.geometry.arrays import Array
 from foldfab.geometry.boxes import bounds
 
@@ -94,12 +94,7 @@ def widest_gap(solution: FoldSolution, times: Array) -> float:
     return max(found)
 
 
-SNAPPING = pytest.mark.xfail(strict=True, reason="the snap of three hinges beside one falls between two samples")
-
-
-@pytest.mark.parametrize(
-    ("name", "slanting"), [pytest.param(*case, marks=[SNAPPING] if case[0] == "deep_box" else []) for case in CASES]
-)
+@cases
 def test_hinges_hold_both_neighbours_together_within_their_play(solution: Make, name: str, slanting: bool) -> None:
     made = solution(name, slanting=slanting)
     assert widest_gap(made, np.linspace(0.0, 1.0, 997)) <= PLAY_SHARE * made.thickness.gap + BETWEEN_SAMPLES

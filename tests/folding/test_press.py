@@ -11,10 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from foldfab.folding import anatomy
-from foldfab.folding.conflict import play_limit
 from foldfab.folding.mechanism import reach, tilts
 from foldfab.folding.model import FoldSolution
-from foldfab.folding.press import follow_down, ways
+from foldfab.folding.press import follow_down, play_limit, ways
 from foldfab.geometry.arrays import Array
 
 Make = Callable[..., FoldSolution]
@@ -85,7 +84,7 @@ def test_play_stays_below_what_the_hinges_can_give(solution: Make, name: str, sl
     made = solution(name, slanting=slanting)
     for step in made.steps:
         for patch, play in step.play.items():
-            assert np.abs(play).max() <= play_limit(made.chain(patch), made.thickness) + 1e-9
+            assert np.abs(play).max() <= play_limit(made.chain(patch), made.thickness.gap) + 1e-9
             assert abs(play[0]) < FLAT and abs(play[-1]) < FLAT
 
 

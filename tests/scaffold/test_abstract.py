@@ -62,7 +62,6 @@ def test_furniture_without_a_base_is_an_error(scaffold: Make, wall_at: Box) -> N
         scaffold((wall_at("lonely", 0, 0, 80),))
 
 
-@pytest.mark.xfail(strict=True, reason="the error about furniture without a base names no part")
 def test_the_error_about_furniture_without_a_base_names_its_parts(scaffold: Make, wall_at: Box) -> None:
     with pytest.raises(AbstractionError) as caught:
         scaffold((wall_at("lonely", 0, 0, 80),))

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 from foldfab.recipe.model import Part, Recipe
 from foldfab.recipe.read import read
@@ -88,7 +87,6 @@ def test_the_shipped_bench_has_the_four_bases_and_six_patches_of_the_paper() -> 
     assert {patch.name for patch in made.patches} == {f"{part}.{i}" for part in ("seat", "back") for i in (1, 2, 3)}
 
 
-@pytest.mark.xfail(strict=True, reason="a base made of edges is named after its absolute height")
 def test_a_base_of_edges_keeps_its_name_wherever_the_furniture_stands(
     scaffold: Make, furniture: dict[str, tuple[Part, ...]], box: Box
 ) -> None:

@@ -64,7 +64,6 @@ def test_a_patch_names_the_recipe_parts_that_it_abstracts(scaffold: Make, board_
     assert [patch.parts for patch in made.patches] == [("a", "b")]
 
 
-@pytest.mark.xfail(strict=True, reason="pieces are named side.1, side.2 even where a part has that name")
 def test_pieces_of_a_part_never_take_the_name_of_another_part(scaffold: Make, furniture: dict[str, tuple[Part, ...]],
                                                               wall_at: Box) -> None:  # fmt: skip
     made = scaffold((*furniture["passage"], wall_at("side.1", 40, 64, 128)))

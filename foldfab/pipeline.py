@@ -32,7 +32,7 @@ AXES = {"-z": (0, 0, -1), "-x": (-1, 0, 0), "-y": (0, -1, 0), "+z": (0, 0, 1), "
 MARGIN_THICKNESSES = 2.0
 """How much wider than the furniture's sheets the print may be on account of plates and knuckles, in K."""
 SCALE_ROUNDS = 6
-"""How often the scale of a folded print is reduced until it fits the bed."""
+"""How often the scale of a print is reduced until it fits the bed."""
 
 
 def load(text: str, **overrides: Any) -> Recipe:
@@ -64,7 +64,7 @@ def foldabilize(recipe: Recipe) -> FoldSolution:
     """
     if recipe.direction is not None:
         return _along(recipe, recipe.direction)
-    found: list[tuple[float, int, FoldSolution]] = []
+    found: list[tuple[int, float, int, FoldSolution]] = []
     reasons = []
     for rank, (name, axis) in enumerate(AXES.items()):
         try:
@@ -72,11 +72,11 @@ def foldabilize(recipe: Recipe) -> FoldSolution:
         except FoldfabError as error:
             reasons.append(f"{name}: {error}")
             continue
-        if solution.cost < min((f[0] for f in found), default=np.inf) - 1e-9:
-            found.append((solution.cost, rank, solution))
+        gone = sum(m.is_deleted for m in solution.modifications)
+        found.append((gone, round(solution.cost, 9), rank, solution))
     if not found:
         raise FoldingError(f"{recipe.name} folds along none of the six axis directions\n  " + "\n  ".join(reasons))
-    return min(found, key=lambda f: f[:2])[2]
+    return min(found, key=lambda f: f[:3])[3]
 
 
 def fabricate(solution: FoldSolution, *, posture: Posture | None = None, progress: Progress | None = None) -> Assembly:
@@ -119,16 +119,19 @@ def shipped() -> tuple[Path, ...]:
 def _along(recipe: Recipe, direction: Array) -> FoldSolution:
     from foldfab.folding.solve import solve
 
-    scale = recipe.print.scale or _fitting_scale(recipe, direction)
-    if recipe.print.scale is not None or recipe.print.posture == "open":
-        return solve(_abstracted(recipe, direction, scale))
+    if recipe.print.scale is not None:
+        return solve(_abstracted(recipe, direction, recipe.print.scale))
+    scale = _fitting_scale(recipe, direction)
     for _ in range(SCALE_ROUNDS):
         solution = solve(_abstracted(recipe, direction, scale))
         share = _share_of_bed(solution)
         if share <= 1.0:
             return solution
         scale *= 0.99 / share
-    raise FoldingError(f"{recipe.name} folded does not fit the {recipe.print.printer.name} at any scale; print it open")
+    raise FoldingError(
+        f"{recipe.name}, {recipe.print.posture}, does not fit the {recipe.print.printer.name}; "
+        f"give a scale below {scale:.3g}"
+    )
 
 
 def _abstracted(recipe: Recipe, direction: Array, scale: float) -> Scaffold:
@@ -177,9 +180,11 @@ def _size(recipe: Recipe) -> Array:
 
 
 def _share_of_bed(solution: FoldSolution) -> float:
-    """How much of the bed the folded furniture takes, 1 where it just fits."""
-    from foldfab.folding.kinematics import folded_size
+    """How much of the bed the furniture takes in its posture, 1 where it just fits."""
+    from foldfab.folding.kinematics import size_at
 
-    bed = np.array(solution.scaffold.recipe.print.printer.build_volume)
-    size = folded_size(solution)
+    options = solution.scaffold.recipe.print
+    bed = np.array(options.printer.build_volume)
+    is_open = options.posture == "open"
+    size = size_at(solution, 0.0 if is_open else 1.0, solution.scaffold.rotation.T if is_open else np.eye(3))
     return float(min((size / bed).max(), (size[[1, 0, 2]] / bed).max()))

@@ -28,8 +28,8 @@ PULL_GAPS = 4.0
 """The halves of a hinge must meet before they are pulled this many clearances (or a knuckle's radius) apart."""
 HELD = 0.02
 """Halves that share this volume hold each other, mm³."""
-LOOSEST = 0.155
-"""The clearance that a hinge can have, as a share of the plates' thickness."""
+TIGHT = 0.1
+"""A clearance that always holds, as a share of the plates' thickness."""
 STILL = 1e-7
 """Relative poses that differ by less are the same."""
 
@@ -181,10 +181,9 @@ def _captive(assembly: Assembly, made: dict[str, Solid]) -> list[Finding]:
         reach = max(PULL_GAPS * gap, joint.radius)
         a, b = (made[name] for name in joint.parts)
         if any(solids.overlap(a, b.translate((way * reach).tolist())) <= HELD for way in _pulls(along)):
-            least = reach / (PULL_GAPS * LOOSEST)
             text = (
                 f"{joint.name} can be pulled apart, because a clearance of {gap:g} mm is too much for plates of "
-                f"{2 * joint.radius:g} mm; print with a smaller clearance or with plates of {least:.1f} mm or more"
+                f"{2 * joint.radius:g} mm; print with a clearance of {TIGHT * 2 * joint.radius:.2f} mm or thicker"
             )
             findings.append(Finding("loose", text, is_fatal=True))
     return findings

@@ -30,8 +30,21 @@ def plate(base: BasePatch, chains: tuple[Chain, ...], thickness: Thickness) -> t
         for end in _ends(chain, base.name):
             solid, holes, pad = _mount(chain, base, thickness, end)
             posts, sockets, pads = posts + solid, sockets + holes, [*pads, pad]
-    body, is_filled = _one_body(base_boxes(base, thickness), pads)
+    body, is_filled = _one_body(_members(base, thickness), pads)
     return cut(union([body, *posts]), sockets), is_filled
+
+
+def _members(base: BasePatch, thickness: Thickness) -> Boxes:
+    """The plate's members (n,): as thick as the plate or, at several heights, each where its part lies."""
+    boxes, face = base_boxes(base, thickness), faces(base, thickness)
+    center, half = boxes.center.copy(), boxes.half.copy()
+    for i, outline in enumerate(base.outlines):
+        if outline.extent is not None:
+            middle, rise = sum(outline.extent) / 2, (outline.extent[1] - outline.extent[0]) / 2
+            rise = max(rise, thickness.panel / 2) + RIM
+            low, high = max(middle - rise, face.bottom), min(middle + rise, face.top)
+            center[i, 2], half[i, 2] = (low + high) / 2, (high - low) / 2
+    return Boxes(center, boxes.axes, half)
 
 
 def _one_body(outlines: Boxes, pads: list[Solid]) -> tuple[Solid, bool]:

@@ -55,7 +55,8 @@ def variants(site: Site, options: FoldOptions, thickness: Thickness, *, may_slan
     found = [Variant("in-place", n, side) for n in counts if n or not is_t for side in sides]
     if is_t or (may_slant and options.slanting):
         found = [Variant("slanted", 0, side) for side in sides] + found
-    return tuple(v for v in found if v.hinges or v.mechanism == "slanted" if chain(site, v, site.span, thickness))
+    span = window_span(site, (0, options.shrink_steps), options.shrink_steps, thickness)
+    return tuple(v for v in found if span is not None and chain(site, v, span, thickness))
 
 
 def windows(steps: int) -> tuple[tuple[int, int], ...]:

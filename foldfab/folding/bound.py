@@ -46,7 +46,9 @@ def _prices(problem: Problem, site: Site, many: tuple[Variant, ...]) -> Array:
 
 
 def _chain(problem: Problem, site: Site, variant: Variant) -> Chain | None:
-    return basic.chain(site, variant, site.span, problem.thickness)
+    steps = problem.options.shrink_steps
+    span = basic.window_span(site, (0, steps), steps, problem.thickness)
+    return basic.chain(site, variant, span, problem.thickness) if span is not None else None
 
 
 def _apart(first: list[Chain | None], second: list[Chain | None]) -> Bools:

@@ -17,7 +17,7 @@ from foldfab.folding.press import play_limit
 from foldfab.folding.space import conflicts, window_conflicts
 from foldfab.geometry.arrays import Array, Bools
 
-SAME_PLACE = 1e-3
+SAME_PLACE = 0.05
 """Two slanted chains drag their upper base alike where the ends differ by less, mm."""
 
 

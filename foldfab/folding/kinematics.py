@@ -8,11 +8,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from foldfab.folding.anatomy import base_boxes, moving_boxes
+from foldfab.folding.anatomy import anchor_feet, base_boxes, far_feet, moving_boxes
 from foldfab.folding.mechanism import frames
 from foldfab.folding.model import Chain, FoldSolution, Step
 from foldfab.geometry.arrays import Array
-from foldfab.geometry.boxes import bounds, moved
+from foldfab.geometry.boxes import Boxes, bounds, grown, moved
+
+FOOT_RIM = 0.5
+"""How far plates may reach beyond the feet on them, mm."""
 
 
 def key_times(solution: FoldSolution) -> Array:
@@ -34,14 +37,21 @@ def configuration(solution: FoldSolution, times: Array) -> dict[str, Array]:
     return found
 
 
-def folded_size(solution: FoldSolution) -> Array:
-    """(3,) size of the flat furniture's bounds in the canonical frame, plates and panels with their knuckles, mm."""
-    thickness = solution.thickness
-    ends = {b.name: _travelled(solution, b.name, np.ones(1))[0] for b in solution.scaffold.bases}
+def size_at(solution: FoldSolution, time: float, turn: Array) -> Array:
+    """(3,) size of everything at a time, in axes turned from the canonical frame by `turn` (3, 3), mm.
+
+    Feet and knuckles are boxes here, so that it is never less than the size of the solids.
+    """
+    thickness, t = solution.thickness, np.array([time])
+    ends = {b.name: _travelled(solution, b.name, t)[0] for b in solution.scaffold.bases}
     boxes = [moved(base_boxes(b, thickness), ends[b.name]) for b in solution.scaffold.bases]
     for chain in solution.chains:
-        boxes.append(moved(moving_boxes(chain, thickness, np.ones(1))[0], ends[chain.anchor]))
-    corners = [bounds(b) for b in boxes]
+        progress, _ = _progress(solution, chain, t)
+        boxes.append(moved(moving_boxes(chain, thickness, progress)[0], ends[chain.anchor]))
+        boxes.append(moved(grown(anchor_feet(chain, thickness), FOOT_RIM), ends[chain.anchor]))
+        if chain.far is not None:
+            boxes.append(moved(grown(far_feet(chain, thickness), FOOT_RIM), ends[chain.far]))
+    corners = [bounds(Boxes(b.center @ turn.T, b.axes @ turn.T, b.half)) for b in boxes]
     size: Array = np.concatenate([c[1] for c in corners]).max(0) - np.concatenate([c[0] for c in corners]).min(0)
     return size
 

@@ -63,7 +63,7 @@ def ways(bases: tuple[str, ...], least: Mapping[tuple[str, str], float], clear: 
     way: dict[str, float] = {}
     for base in bases:
         below = [way[a] + clear[a, b] - least[a, b] for a, b in least if b == base and a in way]
-        way[base] = min(below) if below else level[base]
+        way[base] = max(min(below) if below else level[base], 0.0)
     return way
 
 
@@ -219,7 +219,7 @@ def _follow(
     found = np.where(is_own & (climb < 1), s[top] * np.clip(climb, 0.0, 1.0), found)
     if _is_twin(chain, sections[own].leader):
         found[is_own] = sections[own].progress
-    found = np.maximum.accumulate(np.where(index < own, 0.0, found))
+    found = np.where(index < own, 0.0, found)
     found[-1] = 1.0
     return found, -drop - (reach(chain, found)[:, 1] - reach(chain, np.zeros(1))[0, 1])
 

@@ -16,6 +16,8 @@ from foldfab.geometry.arrays import Array
 from foldfab.geometry.boxes import Boxes, close_pairs, grown
 from foldfab.scaffold.model import BasePatch, Patch, Scaffold
 
+EDGE_THICKNESSES = 2.0
+"""Patches that overlap by more than this many K cross each other; the search has to shrink one of them at its cost."""
 SIDE_BY_SIDE = np.cos(np.radians(5.0))
 """Patches this parallel meet edge to edge; others meet edge to face."""
 
@@ -123,9 +125,11 @@ def _trimmed_pair(a: Site, b: Site, thickness: Thickness) -> tuple[Site, Site]:
     if not len(close_pairs(grown(first, thickness.gap / 2), grown(second, thickness.gap / 2))[0]):
         return a, b
     short_a, short_b = _trimmed(a, second, b, thickness), _trimmed(b, first, a, thickness)
-    lost_a = 1 - float(np.ptp(short_a.span)) / float(np.ptp(a.span))
-    lost_b = 1 - float(np.ptp(short_b.span)) / float(np.ptp(b.span))
-    return (short_a, b) if (lost_a, a.patch.area) <= (lost_b, b.patch.area) else (a, short_b)
+    lost_a, lost_b = (float(np.ptp(old.span) - np.ptp(new.span)) for old, new in ((a, short_a), (b, short_b)))
+    if min(lost_a, lost_b) > EDGE_THICKNESSES * thickness.panel + 3 * thickness.gap:
+        return a, b
+    share_a, share_b = lost_a / float(np.ptp(a.span)), lost_b / float(np.ptp(b.span))
+    return (short_a, b) if (share_a, a.patch.area) <= (share_b, b.patch.area) else (a, short_b)
 
 
 def _trimmed(site: Site, other: Boxes, neighbour: Site, thickness: Thickness) -> Site:

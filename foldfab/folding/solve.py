@@ -22,6 +22,8 @@ from foldfab.folding.units import Unit, decompose
 from foldfab.geometry.boxes import Boxes, stacked
 from foldfab.scaffold.model import Scaffold
 
+SINGLES = 4
+"""How many un-hingeable patches are tried to be disconnected each for itself, before all of them are."""
 REHEARSALS = 8
 """How often the fold is solved anew because a rehearsal of the whole has shown a clash; the kernel judges the last."""
 
@@ -42,7 +44,9 @@ def solve(scaffold: Scaffold) -> FoldSolution:
         return _solved(scaffold, thickness)
     found: list[FoldSolution] = []
     refused: list[FoldingError] = []
-    for tried in (scaffold, disconnected(scaffold, rigid, thickness)):
+    tries = [(), *((name,) for name in rigid[:SINGLES]), rigid]
+    for loose in dict.fromkeys(tries):
+        tried = disconnected(scaffold, loose, thickness)
         try:
             found.append(_solved(tried, thickness))
         except FoldingError as error:
@@ -65,9 +69,10 @@ def _solved(scaffold: Scaffold, thickness: Thickness) -> FoldSolution:
             raise FoldingError(_refused(ordered))
         met = first_clash(problem, scene, ordered.folds)
         if met is None:
-            break
+            return _solution(problem, scene, bound, ordered)
         problem = replace(problem, banned=problem.banned | {met}, forms={}, room={}, solved={})
-    return _solution(problem, scene, bound, ordered)
+    told = ", ".join(sorted({patch for patch, _ in problem.banned}))
+    raise FoldingError(f"no folding solution found: {told} stay in the way of what folds before; try another thickness")
 
 
 def _furniture(scaffold: Scaffold, thickness: Thickness, placed: Mapping[str, Site]) -> Boxes:

@@ -90,7 +90,10 @@ def _fold(
     table = _tables(problem, unit, found, priced)
     forbidden: set[Combination] = set()
     worth = [undominated(g, costs, table, frozenset()) for g in range(len(costs))]
+    short = [p for p in unit.patches if not found[p]]
     last = "no combination of options is free of conflicts"
+    if short:
+        last = f"{', '.join(short[:3])} is too short or too steep for hinges at this scale; print larger or thinner"
     for _ in range(ROUNDS):
         picked = cheapest(costs, table, frozenset(forbidden), worth)
         if picked is None:
@@ -102,7 +105,7 @@ def _fold(
             cost = sum(o.cost for o in chosen.values())
             weight = sum(priced[p][i][1] for p, i in zip(unit.patches, picked, strict=True))
             return UnitFold(unit, chosen, reasons, *result, around.cluster, cost, weight)
-        last = result.reason
+        last = last if short else result.reason
         for g in _learn(unit, priced, picked, result, costs, table, forbidden):
             worth[g] = undominated(g, costs, table, frozenset(forbidden))
     return Refusal(unit, last)

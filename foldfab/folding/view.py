@@ -6,9 +6,12 @@ import itertools
 
 import numpy as np
 
-from foldfab.folding.candidates import PAD_SHARE, Problem, Surroundings, clearances, held, is_slantable, seen_from
+from foldfab.folding.candidates import Problem, Surroundings, clearances, held, is_slantable, seen_from
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Array, Bools
+
+NEARLY = 0.2
+"""What is unfolded and keeps bases apart by less than this share of K more than their stack is not in the way."""
 
 Limits = dict[tuple[str, str], tuple[float, float, str]]
 """By (lower, upper) base: how far the upper cluster may come down before it meets something that lies flat, before it
@@ -44,7 +47,7 @@ def held_up(problem: Problem, unit: Unit, limits: Limits) -> str:
         assert site.far is not None
         pair = (site.anchor, site.far)
         least = problem.thickness.stack(2, has_upper_base=True)
-        if limits[pair][1] < clear[pair] - least - PAD_SHARE * 0.5 * problem.thickness.panel:
+        if limits[pair][1] < clear[pair] - least - NEARLY * problem.thickness.panel:
             return limits[pair][2]
     return ""
 

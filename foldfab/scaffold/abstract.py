@@ -11,8 +11,8 @@ from foldfab.geometry.boxes import close_pairs, grown
 from foldfab.geometry.rotation import upright
 from foldfab.recipe.model import Recipe
 from foldfab.scaffold import segments as seg
-from foldfab.scaffold.bases import find_bases
-from foldfab.scaffold.model import Scaffold
+from foldfab.scaffold.bases import Layout, find_bases
+from foldfab.scaffold.model import BasePatch, Patch, Scaffold
 from foldfab.scaffold.segments import Segment
 from foldfab.scaffold.sheets import sheets
 from foldfab.scaffold.split import cut
@@ -20,6 +20,8 @@ from foldfab.scaffold.split import cut
 TOUCH_SHARE = 0.02
 """Parts touch where they are closer than this share of the parts' median longest side; tied to the parts and not to
 the whole, so that a composite is abstracted like its cells."""
+STEEP_THICKNESSES = 1.5
+"""A base that slopes by more than this many panel thicknesses is printed level, and a note says so."""
 STUB_THICKNESSES = 2.5
 """A piece shorter than this many panel thicknesses is too short to carry a hinge at each end."""
 
@@ -35,18 +37,22 @@ def abstract(recipe: Recipe, direction: Array, scale: float) -> Scaffold:
     thickness, gap = recipe.print.thickness, recipe.print.clearance
     tolerance = TOUCH_SHARE * float(np.median([2 * s.half.max() for s in parts]))
     _require_connected(parts, tolerance)
-    leaves = sheets(tuple(s for s in parts if not s.is_base), thickness + gap)
     stub = STUB_THICKNESSES * thickness
-    layout = find_bases(tuple(s for s in parts if s.is_base), leaves, tolerance, stub)
+    layout, patches, notes = _laid_out(parts, tolerance, stub, thickness + gap)
+    level = [s.name for s in parts if s.name in _loose(parts, layout, patches) and seg.is_level(s)]
+    if level:
+        # A rail that touches no base can be one: it lies level, and what it touches folds.
+        parts = tuple(seg.as_base(s) if s.name in level else s for s in parts)
+        layout, patches, notes = _laid_out(parts, tolerance, stub, thickness + gap)
     if not layout.bases:
         names = tuple(s.name for s in parts)
         raise AbstractionError(
             f"neither {_listed(names)} nor a joint of parts is perpendicular to the folding direction: no base",
             names,
         )
-    patches, notes = cut(leaves, layout, stub)
-    _require_attached(recipe, patches, parts, layout.bases)
+    _require_attached(_loose(parts, layout, patches))
     _require_one_piece(patches, layout.bases)
+    notes = (*notes, *_tilted(parts, thickness))
     return Scaffold(recipe, direction, upright(direction), scale, layout.bases, patches, notes)
 
 
@@ -65,14 +71,37 @@ def _require_connected(parts: tuple[Segment, ...], tolerance: float) -> None:
         )
 
 
-def _require_attached(recipe: Recipe, patches: tuple, parts: tuple[Segment, ...], bases: tuple) -> None:  # type: ignore[type-arg]
-    held = {p for patch in patches if patch.bases for p in patch.parts} | {p for base in bases for p in base.parts}
-    loose = tuple(s.name for s in parts if s.name not in held)
+def _laid_out(
+    parts: tuple[Segment, ...], tolerance: float, stub: float, distance: float
+) -> tuple[Layout, tuple[Patch, ...], tuple[str, ...]]:
+    leaves = sheets(tuple(s for s in parts if not s.is_base), distance)
+    layout = find_bases(tuple(s for s in parts if s.is_base), leaves, tolerance, stub)
+    return layout, *cut(leaves, layout, stub)
+
+
+def _tilted(parts: tuple[Segment, ...], thickness: float) -> list[str]:
+    """What is printed level although it is not."""
+    notes = []
+    for part in parts:
+        rise = seg.slope(part)
+        if part.is_base and rise > STEEP_THICKNESSES * thickness:
+            notes.append(f"{part.name} slopes by {rise:.1f} mm at print scale and is printed level")
+    return notes
+
+
+def _loose(parts: tuple[Segment, ...], layout: Layout, patches: tuple[Patch, ...]) -> tuple[str, ...]:
+    """Names of the parts that belong to no base and fold onto none."""
+    held = {p for patch in patches if patch.bases for p in patch.parts} | {p for b in layout.bases for p in b.parts}
+    held |= {p for b in layout.bases for o in b.outlines for p in (o.part,)}
+    return tuple(s.name for s in parts if s.name not in held)
+
+
+def _require_attached(loose: tuple[str, ...]) -> None:
     if loose:
         raise AbstractionError(f"{_listed(loose)} would fold but touch{'es' if len(loose) == 1 else ''} no base", loose)
 
 
-def _require_one_piece(patches: tuple, bases: tuple) -> None:  # type: ignore[type-arg]
+def _require_one_piece(patches: tuple[Patch, ...], bases: tuple[BasePatch, ...]) -> None:
     graph: nx.Graph[str] = nx.Graph()
     graph.add_nodes_from(base.name for base in bases)
     graph.add_edges_from(patch.bases for patch in patches if len(patch.bases) == 2)

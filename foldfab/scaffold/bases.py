@@ -22,6 +22,8 @@ from foldfab.scaffold.sheets import Sheet
 
 STUB_SHARE = 0.12
 """A sheet that sticks out beyond a base by less than this share of its length is trimmed to the base."""
+STEP = 0.5
+"""Parts of a base whose middles differ more than this in height keep their own heights, mm."""
 ALIGNED = np.cos(np.radians(10.0))
 """Ends of two sheets join where they run this parallel."""
 
@@ -158,7 +160,8 @@ def _layout(graph: nx.Graph[object], parts: tuple[Segment, ...], leaves: tuple[S
 def _base(
     graph: nx.Graph[object], parts: list[Segment], members: list[int], lines: list[Line], leaves: tuple[Sheet, ...]
 ) -> BasePatch:
-    outlines = [_outline(part) for part in parts]
+    stepped = len(parts) > 1 and float(np.ptp([part.center[2] for part in parts])) > STEP
+    outlines = [_outline(part, is_stepped=stepped) for part in parts]
     needed = lines if not parts else _connecting(graph, members, lines)
     outlines += [_strip_outline(leaves[line.sheet], line) for line in needed]
     heights = [float(part.center[2]) for part in parts] or [line.height for line in lines]
@@ -186,10 +189,12 @@ def _connecting(graph: nx.Graph[object], members: list[int], lines: list[Line]) 
     return needed
 
 
-def _outline(part: Segment) -> Outline:
+def _outline(part: Segment, *, is_stepped: bool) -> Outline:
     level = np.hypot(part.axes[:, 0], part.axes[:, 1]) * part.half
     along = part.axes[int(np.argmax(level)), :2]
-    return _rectangle(part.name, part.center[:2], along / np.linalg.norm(along), part)
+    made = _rectangle(part.name, part.center[:2], along / np.linalg.norm(along), part)
+    rise = float(np.abs(part.axes[:, 2]) @ part.half)
+    return replace(made, extent=(float(part.center[2]) - rise, float(part.center[2]) + rise)) if is_stepped else made
 
 
 def _rectangle(name: str, center: Array, along: Array, part: Segment) -> Outline:

@@ -23,6 +23,8 @@ class Outline:
     """(2,) unit direction of its first side."""
     half: Array
     """(2,) half lengths along `along` and across it, mm."""
+    extent: tuple[float, float] | None = None
+    """Heights between which the part lies, mm, where the parts of a base lie at several heights."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "center", frozen(self.center, 2))

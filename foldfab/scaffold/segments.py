@@ -6,7 +6,7 @@ every other part folds. Of a rod's two planes the one is taken whose hinge direc
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,6 +21,8 @@ PLATE_TILT = np.radians(26.0)
 """A plate this close to perpendicular to d still counts as perpendicular (slightly tilted seats)."""
 ROD_TILT = np.radians(8.0)
 """The same for a rod's axis."""
+FILLING = 1.6
+"""A board whose bounding rectangle is this many times its own face leans within its plane."""
 UPRIGHT = 1e-6
 """Sine of the tilt below which a rod stands upright."""
 
@@ -61,15 +63,37 @@ def as_boxes(many: tuple[Segment, ...]) -> Boxes:
 def sheet(segment: Segment) -> tuple[Array, Array, float, float, float]:
     """The medial sheet of a segment that folds, as a rectangle with horizontal hinge direction.
 
+    A board that leans within its own plane would fill far more of that plane than it is; like a rod it spans its sheet
+    with the horizontal across its axis.
+
     Returns:
         along (3,), up (3,), and the full width, length and thickness in mm: the tight rectangle around the
         part in the plane that contains `along` (perpendicular to d) and rises most steeply.
     """
-    along = _hinge_direction(segment)
-    up = _rising(segment, along)
-    normal = np.cross(along, up)
-    extent = 2 * np.abs(segment.axes @ np.stack([along, up, normal]).T).T @ segment.half
-    return along, up, float(extent[0]), float(extent[1]), float(extent[2])
+    thin, middle, long = np.argsort(segment.half, kind="stable")
+    if _is_rod(segment.half):
+        return _spanned(segment, segment.axes[long], segment.axes[thin])
+    found = _spanned(segment, np.cross(segment.axes[thin], _level(segment.axes[thin])), segment.axes[thin])
+    if found[2] * found[3] > FILLING * 4 * segment.half[middle] * segment.half[long]:
+        return _spanned(segment, segment.axes[long], segment.axes[thin])
+    return found
+
+
+def slope(segment: Segment) -> float:
+    """How much higher one end of its medial sheet is than the other, mm."""
+    rise = np.abs(segment.axes[:, 2]) * segment.half
+    _, middle, long = np.argsort(segment.half, kind="stable")
+    return 2 * float(rise[long] if _is_rod(segment.half) else rise[long] + rise[middle])
+
+
+def as_base(segment: Segment) -> Segment:
+    """The segment taken as perpendicular to d."""
+    return replace(segment, is_base=True)
+
+
+def is_level(segment: Segment) -> bool:
+    """Whether its longest side is perpendicular to d."""
+    return bool(abs(segment.axes[int(np.argmax(segment.half)), 2]) < np.sin(ROD_TILT))
 
 
 def _segment(part: Part, turn: Array, scale: float) -> Segment:
@@ -89,22 +113,19 @@ def _is_rod(half: Array) -> bool:
     return bool(long > ROD_RATIO * middle and middle < ROD_RATIO * thin)
 
 
-def _hinge_direction(segment: Segment) -> Array:
-    """(3,) horizontal: along the sheet of a plate; across the axis of a rod, of which it spans the sheet with it."""
-    thin, _, long = np.argsort(segment.half, kind="stable")
-    guide = segment.axes[long] if _is_rod(segment.half) else segment.axes[thin]
-    along = np.cross([0.0, 0.0, 1.0], guide)
-    if np.linalg.norm(along) < UPRIGHT:
-        # An upright rod folds about its wider side.
-        along = np.cross([0.0, 0.0, 1.0], segment.axes[thin])
-    unit: Array = along / np.linalg.norm(along)
-    return unit
+def _spanned(segment: Segment, axis: Array, normal: Array) -> tuple[Array, Array, float, float, float]:
+    """The sheet (as `sheet` returns it) that an axis spans with the horizontal across it; upright, with the one across
+    `normal`.
+    """
+    along = _level(axis) if np.hypot(axis[0], axis[1]) > UPRIGHT else _level(normal)
+    up = axis - (axis @ along) * along
+    up = up / np.linalg.norm(up) * np.sign(up[2])
+    extent = 2 * np.abs(segment.axes @ np.stack([along, up, np.cross(along, up)]).T).T @ segment.half
+    return along, up, float(extent[0]), float(extent[1]), float(extent[2])
 
 
-def _rising(segment: Segment, along: Array) -> Array:
-    """(3,) the direction in the sheet, perpendicular to `along`, that goes up."""
-    thin, _, long = np.argsort(segment.half, kind="stable")
-    up = segment.axes[long] if _is_rod(segment.half) else np.cross(segment.axes[thin], along)
-    up = up - (up @ along) * along
-    unit: Array = up / np.linalg.norm(up) * np.sign(up[2])
+def _level(direction: Array) -> Array:
+    """(3,) the horizontal unit vector across a direction that is not upright."""
+    across = np.cross([0.0, 0.0, 1.0], direction)
+    unit: Array = across / np.linalg.norm(across)
     return unit

@@ -21,7 +21,7 @@ def cut(leaves: tuple[Sheet, ...], layout: Layout, stub: float) -> tuple[tuple[P
     for index, leaf in enumerate(leaves):
         pieces = [p for p in _pieces(leaf, index, layout) if p[1] - p[0] >= stub or (p[2] and p[3])]
         movable = [p for p in pieces if p[2] != p[3]]
-        if len(movable) < len(pieces):
+        if any(p[2] is not None and p[2] == p[3] for p in pieces):
             notes.append(f"{leaf.parts[0]} stays rigid where both its ends belong to the same base")
         for number, piece in enumerate(movable, 1):
             name = leaf.parts[0] if len(movable) == 1 else _new_name(f"{leaf.parts[0]}.{number}", taken)

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from foldfab.folding import anatomy
-from foldfab.folding.kinematics import configuration, folded_size, key_times
+from foldfab.folding.kinematics import configuration, key_times, size_at
 from foldfab.folding.mechanism import joints, tilts
 from foldfab.folding.model import Chain, FoldSolution
 from foldfab.folding.press import PLAY_SHARE
@@ -136,5 +136,5 @@ def test_folded_furniture_is_as_high_as_its_stack(solution: Make, name: str) -> 
         shift = ends[base.name][0, 2, 3]
         low, high = min(low, corners[0][:, 2].min() + shift), max(high, corners[1][:, 2].max() + shift)
     if all(chain.far is not None for chain in made.chains):
-        assert folded_size(made)[2] == pytest.approx(high - low)
-    assert folded_size(made)[2] < 50
+        assert size_at(made, 1.0, np.eye(3))[2] == pytest.approx(high - low)
+    assert size_at(made, 1.0, np.eye(3))[2] < 50

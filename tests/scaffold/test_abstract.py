@@ -51,10 +51,28 @@ def test_a_gap_within_a_hundredth_of_a_part_still_joins(scaffold: Make, board_at
 
 
 def test_a_part_that_folds_but_touches_no_base_is_named(scaffold: Make, box: Box, board_at: Box, wall_at: Box) -> None:
-    loose = box("loose", (22, 0, 40), (40, 4, 30))
+    loose = box("loose", (17, 0, 40), (30, 4, 40))
     with pytest.raises(AbstractionError, match="loose would fold but touches no base") as caught:
         scaffold((board_at("ground", 0), wall_at("leg", 0, 0, 80), loose))
     assert caught.value.parts == ("loose",)
+
+
+def test_a_rail_that_only_touches_what_folds_becomes_a_base(
+    scaffold: Make, box: Box, board_at: Box, wall_at: Box
+) -> None:
+    legs = (wall_at("left", -40, 0, 80), wall_at("right", 40, 0, 80))
+    rail = box("rail", (0, 0, 40), (80, 4, 16))
+    made = scaffold((*legs, rail, board_at("top", 80)))
+    assert "rail" in {base.name for base in made.bases}
+    assert [p.name for p in made.patches] == ["left.1", "left.2", "right.1", "right.2"]
+
+
+def test_a_base_that_slopes_is_told(scaffold: Make, box: Box, wall_at: Box) -> None:
+    seat = replace(
+        box("seat", (0, 0, 80), (120, 40, 4)), axes=np.array([[0.966, 0, 0.259], [0, 1, 0], [-0.259, 0, 0.966]])
+    )
+    made = scaffold((seat, wall_at("leg", 0, 0, 80)))
+    assert any("seat slopes by 31" in note for note in made.notes)
 
 
 def test_furniture_without_a_base_is_an_error(scaffold: Make, wall_at: Box) -> None:

@@ -82,6 +82,9 @@ def _soundness(made: dict[str, Solid]) -> list[Finding]:
         if solid.volume() <= 0 or count != 1:
             text = f"{name} falls into {count} bodies; print larger, or with thinner plates"
             findings.append(Finding("body", text, is_fatal=True))
+        elif not solids.stays_closed(solid):
+            text = f"the mesh of {name} touches itself along an edge; print at a slightly different scale"
+            findings.append(Finding("mesh", text, is_fatal=True))
     return findings
 
 

@@ -22,8 +22,10 @@ Solid: TypeAlias = Manifold
 SIDES = 32
 """Sides of the polygon that stands for a circle."""
 
-SLIVER = 1e-3
-"""Detail below this is rounding, mm."""
+SLIVERS = (1e-3, 3e-3, 1e-2, 3e-2)
+"""Detail that may be given up, mm; the finest that leaves a sound mesh is taken."""
+WELD_DIGITS = 5
+"""Vertices closer than this many decimals of a millimetre are one in a file."""
 
 
 def box(low: Iterable[float], high: Iterable[float]) -> Solid:
@@ -78,8 +80,26 @@ def hull(parts: list[Solid]) -> Solid:
 
 
 def tidied(body: Solid) -> Solid:
-    """The body without the slivers that booleans of coplanar faces leave, which 32-bit files would pinch shut."""
-    return checked(body.simplify(SLIVER))
+    """The body without the slivers that booleans of nearly coplanar faces leave, which 32-bit files would pinch shut.
+
+    Detail is given up only as far as it takes for the mesh to stay closed when it is written.
+    """
+    for detail in SLIVERS:
+        tidy = checked(body.simplify(detail))
+        if stays_closed(tidy):
+            return tidy
+    return tidy
+
+
+def stays_closed(body: Solid) -> bool:
+    """Whether each edge still belongs to two triangles when vertices are welded on the grid of a 32-bit file."""
+    vertices, faces = mesh(body)
+    grid = np.round(vertices, WELD_DIGITS).astype(np.float32)
+    _, index = np.unique(grid, axis=0, return_inverse=True)
+    welded = index.reshape(-1)[faces]
+    edges = np.sort(np.concatenate([welded[:, [0, 1]], welded[:, [1, 2]], welded[:, [2, 0]]]), axis=1)
+    _, counts = np.unique(edges, axis=0, return_counts=True)
+    return bool((counts == 2).all())
 
 
 def pieces(body: Solid) -> int:

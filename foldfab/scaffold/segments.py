@@ -23,6 +23,10 @@ ROD_TILT = np.radians(8.0)
 """The same for a rod's axis."""
 FILLING = 1.6
 """A board whose bounding rectangle is this many times its own face leans within its plane."""
+ALL_BUT_ZERO = 1e-4
+"""Components of axes below this are errors of the file: 0.1 mm over a metre."""
+GRID_DIGITS = 3
+"""Places and sizes stand on a grid of 1 µm in print: faces are flush, or far enough apart for the solid kernel."""
 UPRIGHT = 1e-6
 """Sine of the tilt below which a rod stands upright."""
 
@@ -97,8 +101,23 @@ def is_level(segment: Segment) -> bool:
 
 
 def _segment(part: Part, turn: Array, scale: float) -> Segment:
-    axes, half = part.axes @ turn.T, scale * part.size / 2
-    return Segment(part.name, scale * turn @ part.center, axes, half, part.hingeable, _is_perpendicular(axes, half))
+    axes, half = _settled(part.axes @ turn.T), _on_grid(scale * part.size / 2)
+    center = _on_grid(scale * turn @ part.center)
+    return Segment(part.name, center, axes, half, part.hingeable, _is_perpendicular(axes, half))
+
+
+def _settled(axes: Array) -> Array:
+    """The orthonormal rows (3, 3) with what is all but zero made zero, so that nearly flush faces become flush."""
+    small = np.abs(axes) < ALL_BUT_ZERO
+    if not (small & (axes != 0)).any():
+        return axes
+    left, _, right = np.linalg.svd(np.where(small, 0.0, axes))
+    settled: Array = left @ right
+    return np.where(np.abs(settled) < 1e-12, 0.0, settled)
+
+
+def _on_grid(lengths: Array) -> Array:
+    return np.round(lengths, GRID_DIGITS) + 0.0
 
 
 def _is_perpendicular(axes: Array, half: Array) -> bool:

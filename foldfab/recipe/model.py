@@ -8,7 +8,6 @@ from typing import Literal
 from foldfab.geometry.arrays import Array, frozen
 
 Posture = Literal["open", "folded"]
-POSTURES: tuple[Posture, ...] = ("open", "folded")
 
 
 @dataclass(frozen=True, slots=True, eq=False)

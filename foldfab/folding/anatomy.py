@@ -13,7 +13,7 @@ import numpy as np
 from foldfab.folding.mechanism import frames, joints, tilts
 from foldfab.folding.model import Chain, Thickness
 from foldfab.geometry.arrays import Array
-from foldfab.geometry.boxes import Boxes
+from foldfab.geometry.boxes import Boxes, stacked
 from foldfab.scaffold.model import BasePatch
 
 
@@ -58,6 +58,27 @@ def moving_boxes(chain: Chain, thickness: Thickness, progress: Array) -> Boxes:
         return slabs
     bars = _knuckles(chain, half_k, progress, axes)
     return Boxes(*(np.concatenate([getattr(slabs, f), getattr(bars, f)], axis=1) for f in ("center", "axes", "half")))
+
+
+def resting_boxes(chain: Chain, thickness: Thickness, progress: float) -> Boxes:
+    """Slabs, knuckles and anchor foot (n,) of a chain at rest, at fold progress 0 or 1."""
+    return stacked([moving_boxes(chain, thickness, np.array([progress]))[0], anchor_feet(chain, thickness)])
+
+
+def swept_boxes(
+    chain: Chain, thickness: Thickness, progress: Array, near: Array, far: Array | None
+) -> Boxes:
+    """Panels, knuckles and feet (k, n) of a chain while its anchor and its far base are translated by `near` and `far`
+    (k, 3)."""
+    panels = moving_boxes(chain, thickness, progress)
+    feet = [(anchor_feet(chain, thickness), near)]
+    if far is not None:
+        feet.append((far_feet(chain, thickness), far))
+    center = [panels.center + near[:, None], *(boxes.center + shift[:, None] for boxes, shift in feet)]
+    shape = (len(progress), 1)
+    axes = [panels.axes, *(np.broadcast_to(boxes.axes, (*shape, 3, 3)) for boxes, _ in feet)]
+    half = [panels.half, *(np.broadcast_to(boxes.half, (*shape, 3)) for boxes, _ in feet)]
+    return Boxes(*(np.concatenate(parts, axis=1) for parts in (center, axes, half)))
 
 
 def anchor_feet(chain: Chain, thickness: Thickness) -> Boxes:

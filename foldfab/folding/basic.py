@@ -13,14 +13,14 @@ import numpy as np
 
 from foldfab.folding.model import Chain, Mechanism, Modification, Side, Thickness
 from foldfab.folding.site import Site
-from foldfab.geometry.arrays import Array
+from foldfab.geometry.arrays import Array, Bools
 from foldfab.recipe.model import FoldOptions
 
 STEEPEST = np.radians(75.0)
 """A patch that leans more than this is too flat to be folded."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, order=True)
 class Variant:
     """How a patch folds, whatever its window."""
 
@@ -84,6 +84,14 @@ def window_span(site: Site, window: tuple[int, int], steps: int, thickness: Thic
         return None
     middle = (low + high) / 2
     return np.array([middle - thickness.hinge_width / 2, middle + thickness.hinge_width / 2])
+
+
+def too_narrow(site: Site, many: tuple[tuple[int, int], ...], steps: int, thickness: Thickness) -> Bools:
+    """Which windows (n,) are too narrow for a hinge; the whole patch never is."""
+    cuts = site.patch.width * (np.array(many) / steps - 0.5)
+    low, high = np.maximum(cuts[:, 0], site.span[0]), np.minimum(cuts[:, 1], site.span[1])
+    found: Bools = (high - low < thickness.hinge_width) & np.array([w != (0, steps) for w in many])
+    return found
 
 
 def chain(site: Site, variant: Variant, span: Array, thickness: Thickness) -> Chain | None:

@@ -25,6 +25,11 @@ EPSILON = 1e-12
 """A choice must be cheaper by more than this to be better."""
 LIMIT = 1_500
 """Branches after which CP-SAT takes over."""
+WIDEST = 100
+"""Groups beyond which CP-SAT is asked at once."""
+
+Table = list[dict[int, Bools]]
+"""For each group, by other group, which of their options (n, m) exclude each other."""
 
 Combination = tuple[tuple[int, int], ...]
 """Options that must not all be taken together, each as (group, option)."""
@@ -34,7 +39,6 @@ def cheapest(
     costs: list[Array],
     conflicts: Mapping[tuple[int, int], Bools],
     forbidden: frozenset[Combination] = frozenset(),
-    worth: list[Bools] | None = None,
 ) -> tuple[int, ...] | None:
     """The option of each group in the cheapest conflict-free choice, or None where there is none.
 
@@ -42,66 +46,93 @@ def cheapest(
         costs: for each group, the costs (n,) of its options; infinite where an option is out of the question.
         conflicts: by groups (g, h) with g < h, which options (n_g, n_h) exclude each other; a missing pair has none.
         forbidden: combinations of (group, option) that must not all be taken together.
-        worth: for each group, which of its options (n,) are `undominated`, where that is known already.
     """
-    table = {**conflicts, **{(h, g): m.T for (g, h), m in conflicts.items()}}
-    worth = worth or [undominated(g, costs, conflicts, forbidden) for g in range(len(costs))]
-    alive = [mask & np.isfinite(price) for mask, price in zip(worth, costs, strict=True)]
+    table = _by_group(len(costs), conflicts)
+    held = _held(len(costs), forbidden)
+    alive = [_undominated(costs[g], table[g], held[g]) for g in range(len(costs))]
     taken: dict[int, int] = {}
     for groups in _islands(alive, table, forbidden):
-        search = _Search(costs, table, forbidden)
-        search.branch({g: alive[g] for g in groups}, {}, 0.0)
-        best = search.best
-        if search.left < 0:
-            best = proven({g: alive[g] for g in groups}, costs, table, sorted(forbidden), best)
+        if len(groups) == 1:
+            price = np.where(alive[groups[0]], costs[groups[0]], np.inf)
+            best: dict[int, int] | None = {groups[0]: int(np.argmin(price))} if np.isfinite(price).any() else None
+        else:
+            best = _solved({g: alive[g] for g in groups}, costs, table, forbidden)
         if best is None:
             return None
         taken.update(best)
     return tuple(taken[g] for g in range(len(costs)))
 
 
-def undominated(
-    group: int, costs: list[Array], conflicts: Mapping[tuple[int, int], Bools], forbidden: frozenset[Combination]
-) -> Bools:
-    """Which options (n,) of a group are worth looking at; it holds until a conflict or a cost of the group changes."""
-    price = costs[group]
-    count = len(price)
-    rows = [m for (g, _), m in sorted(conflicts.items(), key=_key) if g == group]
-    rows += [m.T for (_, h), m in sorted(conflicts.items(), key=_key) if h == group]
-    excludes = np.concatenate([np.zeros((count, 1), dtype=bool), *rows], axis=1).astype(np.float32)
-    more = excludes @ (1 - excludes).T > 0
-    order = np.arange(count)
-    is_cheaper = (price[:, None] < price) | ((price[:, None] == price) & (order[:, None] < order))
-    # An option that belongs to a forbidden combination may have to give way to one that it would dominate.
-    free = np.ones(count, dtype=bool)
-    free[[o for combination in forbidden for g, o in combination if g == group]] = False
-    dominates: Bools = ~more & is_cheaper & free[:, None]
-    alive: Bools = np.isfinite(price) & ~np.logical_or.reduce(dominates, axis=0)
+def _by_group(count: int, conflicts: Mapping[tuple[int, int], Bools]) -> Table:
+    table: Table = [{} for _ in range(count)]
+    for (g, h), excluded in conflicts.items():
+        table[g][h] = excluded
+        table[h][g] = excluded.T
+    return table
+
+
+def _held(count: int, forbidden: frozenset[Combination]) -> list[list[int]]:
+    """For each group, its options that belong to a forbidden combination."""
+    held: list[list[int]] = [[] for _ in range(count)]
+    for combination in forbidden:
+        for g, option in combination:
+            held[g].append(option)
+    return held
+
+
+def _undominated(price: Array, conflicts: Mapping[int, Bools], held: list[int]) -> Bools:
+    """Which options (n,) of a group are worth looking at: none that is no dearer excludes no more.
+
+    An option that belongs to a forbidden combination may have to give way to one that it would dominate.
+    """
+    alive: Bools = np.isfinite(price)
+    rest = np.nonzero(alive)[0]
+    rest = rest[np.argsort(price[rest], kind="stable")]
+    free = np.ones(len(price), dtype=bool)
+    free[held] = False
+    excludes = np.concatenate([np.zeros((len(rest), 1), dtype=bool), *(m[rest] for m in conflicts.values())], axis=1)
+    if not excludes[0].any() if len(rest) else False:
+        # The cheapest option of all excludes nothing: it dominates every other one unless it is held.
+        if free[rest[0]]:
+            alive[rest[1:]] = False
+            return alive
+    columns = excludes[:, excludes.any(0)].astype(np.float32)
+    more = columns @ (1 - columns).T > 0
+    is_first = np.triu(np.ones((len(rest), len(rest)), dtype=bool), 1)
+    dominates = ~more & is_first & free[rest][:, None]
+    alive[rest[dominates.any(0)]] = False
     return alive
 
 
-def _key(item: tuple[tuple[int, int], Bools]) -> tuple[int, int]:
-    return item[0]
-
-
-def _islands(
-    alive: list[Bools], table: Mapping[tuple[int, int], Bools], forbidden: frozenset[Combination]
-) -> list[list[int]]:
+def _islands(alive: list[Bools], table: Table, forbidden: frozenset[Combination]) -> list[list[int]]:
     """Sets of groups without a conflict between them."""
     graph: nx.Graph[int] = nx.Graph()
     graph.add_nodes_from(range(len(alive)))
-    graph.add_edges_from((g, h) for (g, h), m in table.items() if m[alive[g]][:, alive[h]].any())
+    for g, row in enumerate(table):
+        own = np.nonzero(alive[g])[0]
+        graph.add_edges_from((g, h) for h, m in row.items() if g < h and m[own][:, alive[h]].any())
     for combination in forbidden:
         nx.add_path(graph, [g for g, _ in combination])
     return sorted(sorted(c) for c in nx.connected_components(graph))
 
 
+def _solved(
+    alive: Mapping[int, Bools], costs: list[Array], table: Table, forbidden: frozenset[Combination]
+) -> dict[int, int] | None:
+    groups = set(alive)
+    own = [c for c in forbidden if {g for g, _ in c} <= groups]
+    search = _Search(costs, table, own)
+    if len(groups) <= WIDEST:
+        search.branch(dict(alive), {}, 0.0)
+        if search.left >= 0:
+            return search.best
+    return proven(alive, costs, table, sorted(own), search.best)
+
+
 class _Search:
     """State of one branch and bound."""
 
-    def __init__(
-        self, costs: list[Array], table: Mapping[tuple[int, int], Bools], forbidden: frozenset[Combination]
-    ) -> None:
+    def __init__(self, costs: list[Array], table: Table, forbidden: list[Combination]) -> None:
         self.costs = costs
         self.table = table
         self.forbidden = sorted(forbidden)
@@ -133,7 +164,7 @@ class _Search:
         left = {}
         for other, options in alive.items():
             if other != group:
-                table = self.table.get((group, other))
+                table = self.table[group].get(other)
                 left[other] = options if table is None else options & ~table[option]
                 if not left[other].any():
                     return

@@ -2,91 +2,143 @@
 
 Two options conflict where their panels meet while both fold, where they drag the upper base along different ways
 (figure 12), or, with thickness, where their accordions snap so differently that the play in their hinges cannot
-cover it. Options of one patch form a clique and are never compared.
+cover it. Options of one patch form a clique and are never compared. What meets is found once for the pieces of all lanes
+of a unit together; tables between the options of two patches are made from that.
 """
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Iterable, Mapping
+
 import numpy as np
 
-from foldfab.folding.basic import Option, windows
-from foldfab.folding.candidates import Candidate, Problem
-from foldfab.folding.mechanism import peak, reach
-from foldfab.folding.model import Chain, Thickness
-from foldfab.folding.press import play_limit
-from foldfab.folding.space import conflicts, window_conflicts
+from foldfab.folding.problem import Problem
+from foldfab.folding.repertoire import Lane, Repertoire, cuts_of, resting, swept
+from foldfab.folding.space import Batch, conflicts
 from foldfab.geometry.arrays import Array, Bools
 
 SAME_PLACE = 0.05
 """Two slanted chains drag their upper base alike where the ends differ by less, mm."""
 
 
-def conflict_table(
-    problem: Problem,
-    unit: str,
-    first: tuple[list[Candidate], list[Option]],
-    second: tuple[list[Candidate], list[Option]],
-) -> Bools:
-    """Which options of one patch (n) conflict with which of another (m), (n, m)."""
-    whole = windows(problem.options.shrink_steps)
-    place = {w: i for i, w in enumerate(whole)}
-    table = np.zeros((len(first[1]), len(second[1])), dtype=bool)
-    rows, columns = _by_variant(first[1], place), _by_variant(second[1], place)
-    for a in first[0]:
-        for b in second[0]:
-            if a.variant not in rows or b.variant not in columns:
-                continue
-            i, w = rows[a.variant]
-            j, v = columns[b.variant]
-            table[np.ix_(i, j)] = _pair(problem, unit, a, b)[np.ix_(w, v)]
-    return table
+def compare(problem: Problem, own: Repertoire, many: Iterable[Lane]) -> None:
+    """Finds out which pieces of the lanes meet, and which of them meet lanes that were compared before."""
+    fresh = [x for x in many if x.number not in own.compared]
+    if not fresh:
+        return
+    known = [own.lanes[n] for n in sorted(own.compared)]
+    same, once = _never_compared(own, fresh)
+    cuts = cuts_of(own)
+    for section in range(own.nominal.sections):
+        moving = swept(problem, own, fresh, section)
+        others = swept(problem, own, known, section)
+        pairs = [(moving, moving, once), (moving, others, same)]
+        if own.nominal.sections > 1:
+            pairs += [(moving, _beside(problem, own, [*fresh, *known], fresh, section), same)]
+            pairs += [(others, _beside(problem, own, fresh, known, section), same)]
+        for a, b, apart in pairs:
+            if a is not None and b is not None:
+                _learn(own, conflicts(a, b, cuts, apart))
+    own.compared.update(x.number for x in fresh)
 
 
-def go_the_same_way(a: Chain, b: Chain) -> bool:
-    """Whether two chains drag their bases along the same way (condition ii of section 5.2)."""
+def windows_table(windows: tuple[tuple[int, int], ...], steps: int) -> Array:
+    """(windows, N_s) 1 where a window holds a piece."""
+    place = np.arange(steps)
+    return np.array([(place >= a) & (place < b) for a, b in windows], dtype=np.float32)
+
+
+def table(
+    problem: Problem, own: Repertoire, first: tuple[Lane, ...], second: tuple[Lane, ...], inside: Array
+) -> Bools | None:
+    """Which options of one patch conflict with which of another: (n · w + 1, m · w + 1), lane by lane, deletion last.
+
+    `inside` (w, N_s) says which pieces each window holds. None where nothing conflicts.
+    """
+    key = (tuple(x.number for x in first), tuple(x.number for x in second))
+    if key not in own.tables:
+        made = _table(problem, own, first, second, inside)
+        own.tables[key] = made if made.any() else np.zeros((0, 0), dtype=bool)
+    found = own.tables[key]
+    return found if found.size else None
+
+
+def neighbours(own: Repertoire, lanes: Mapping[str, tuple[Lane, ...]]) -> list[tuple[str, str]]:
+    """The pairs of patches whose options may conflict, sorted."""
+    found = {(own.lanes[a].patch, own.lanes[b].patch) for a, b in own.pieces}
+    pairs: dict[tuple[str, str | None], list[str]] = {}
+    for patch, many in lanes.items():
+        if many and many[0].chain.far is not None:
+            ends = sorted((many[0].chain.anchor, many[0].chain.far))
+            pairs.setdefault((ends[0], ends[1]), []).append(patch)
+    for patches in pairs.values():
+        every = [x for p in patches for x in lanes[p]]
+        snaps = [x.snap for x in every if x.chain.shape.comes_down]
+        alike = not snaps or max(snaps) - min(snaps) <= 2 * min(x.give for x in every)
+        if any(x.drag is not None for x in every) or not alike:
+            found |= set(itertools.combinations(patches, 2))
+    return sorted({(min(a, b), max(a, b)) for a, b in found if a in lanes and b in lanes})
+
+
+def drag_alike(a: Lane, b: Lane) -> bool:
+    """Whether two lanes drag their bases along the same way (condition ii of section 5.2)."""
     if not _share_bases(a, b):
         return True
-    if a.mechanism != b.mechanism:
+    if (a.drag is None) != (b.drag is None):
         return False
-    return a.mechanism == "in-place" or bool(np.abs(_way(a) - _way(b)).max() < SAME_PLACE)
+    return a.drag is None or bool(np.abs(a.way - b.way).max() < SAME_PLACE)
 
 
-def snap_alike(a: Chain, b: Chain, thickness: Thickness) -> bool:
-    """Whether the play in their hinges covers the difference between the snaps of two chains."""
-    if not _share_bases(a, b) or a.mechanism != "in-place" or b.mechanism != "in-place":
+def snap_alike(a: Lane, b: Lane) -> bool:
+    """Whether the play in their hinges covers the difference between the snaps of two lanes."""
+    if not _share_bases(a, b) or not a.chain.shape.comes_down or not b.chain.shape.comes_down:
         return True
-    return abs(peak(a)[0] - peak(b)[0]) <= play_limit(a, thickness.gap) + play_limit(b, thickness.gap)
+    return abs(a.snap - b.snap) <= a.give + b.give
 
 
-def _share_bases(a: Chain, b: Chain) -> bool:
-    return a.far is not None and {a.anchor, a.far} == {b.anchor, b.far}
+def _share_bases(a: Lane, b: Lane) -> bool:
+    return a.chain.far is not None and {a.chain.anchor, a.chain.far} == {b.chain.anchor, b.chain.far}
 
 
-def _by_variant(many: list[Option], place: dict[tuple[int, int], int]) -> dict[object, tuple[list[int], list[int]]]:
-    """By variant, the positions of its options and of their windows."""
-    found: dict[object, tuple[list[int], list[int]]] = {}
-    for i, option in enumerate(many):
-        if option.variant is not None:
-            found.setdefault(option.variant, ([], []))
-            found[option.variant][0].append(i)
-            found[option.variant][1].append(place[option.window])
+def _beside(problem: Problem, own: Repertoire, many: list[Lane], moving: list[Lane], section: int) -> Batch | None:
+    """Those of `many` that stand still in a section on bases of those that fold in it."""
+    touched = {b for x in moving if section in x.active for b in (x.chain.anchor, x.chain.far)}
+    near = [x for x in many if x.chain.anchor in touched or x.chain.far in touched]
+    return resting(problem, own, near, section)
+
+
+def _never_compared(own: Repertoire, fresh: list[Lane]) -> tuple[Bools, Bools]:
+    """(lanes, lanes) the lanes of one patch; and those and, of two fresh lanes, the second with the first."""
+    patches = {p: i for i, p in enumerate(own.unit.patches)}
+    patch = np.array([patches[x.patch] for x in own.lanes])
+    is_fresh = np.zeros(len(own.lanes), dtype=bool)
+    is_fresh[[x.number for x in fresh]] = True
+    number = np.arange(len(own.lanes))
+    same: Bools = patch[:, None] == patch
+    return same, same | (is_fresh[:, None] & is_fresh & (number[:, None] >= number))
+
+
+def _learn(own: Repertoire, met: Mapping[tuple[int, int], Bools]) -> None:
+    for (a, b), pieces in met.items():
+        key, own_pieces = ((a, b), pieces) if a < b else ((b, a), pieces.T)
+        own.pieces[key] = own.pieces[key] | own_pieces if key in own.pieces else own_pieces
+
+
+def _table(
+    problem: Problem, own: Repertoire, first: tuple[Lane, ...], second: tuple[Lane, ...], inside: Array
+) -> Bools:
+    steps, count = inside.shape[1], len(inside)
+    met = np.zeros((len(first), steps, len(second), steps), dtype=np.float32)
+    never = np.zeros((len(first), len(second)), dtype=bool)
+    for i, a in enumerate(first):
+        for j, b in enumerate(second):
+            pieces = own.pieces.get((a.number, b.number) if a.number < b.number else (b.number, a.number))
+            if pieces is not None:
+                met[i, :, j] = pieces if a.number < b.number else pieces.T
+            never[i, j] = not drag_alike(a, b) or not snap_alike(a, b)
+    held = np.einsum("ws,isjt,vt->iwjv", inside, met, inside, optimize=True) > 0.5
+    held |= never[:, None, :, None]
+    found = np.zeros((len(first) * count + 1, len(second) * count + 1), dtype=bool)
+    found[:-1, :-1] = held.reshape(len(first) * count, len(second) * count)
     return found
-
-
-def _pair(problem: Problem, unit: str, a: Candidate, b: Candidate) -> Bools:
-    """Which windows of one candidate conflict with which of the other."""
-    key = (unit, a.chain.patch, a.variant, b.chain.patch, b.variant)
-    if key not in problem.pairs:
-        whole = windows(problem.options.shrink_steps)
-        if not go_the_same_way(a.chain, b.chain) or not snap_alike(a.chain, b.chain, problem.thickness):
-            problem.pairs[key] = np.ones((len(whole), len(whole)), dtype=bool)
-        else:
-            problem.pairs[key] = window_conflicts(conflicts(a.sweep, b.sweep), whole)
-    return problem.pairs[key]
-
-
-def _way(chain: Chain) -> Array:
-    """(2, 3) where the far end stands open and folded, relative to the root."""
-    ends = reach(chain, np.array([0.0, 1.0])) @ np.stack([chain.across, chain.rise])
-    way: Array = ends - ends[0]
-    return way

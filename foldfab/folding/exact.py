@@ -20,7 +20,7 @@ WORK = 20.0
 
 
 def proven(
-    alive: Mapping[int, Bools], costs: list[Array], table: Mapping[tuple[int, int], Bools],
+    alive: Mapping[int, Bools], costs: list[Array], table: list[dict[int, Bools]],
     forbidden: list[tuple[tuple[int, int], ...]], known: Mapping[int, int] | None,
 ) -> dict[int, int] | None:  # fmt: skip
     """The cheapest option for each group, or None where there is no choice without conflicts.
@@ -28,7 +28,7 @@ def proven(
     Args:
         alive: by group, which of its options (n,) may be taken.
         costs: for each group, the costs (n,) of its options.
-        table: by ordered pair of groups, which of their options (n_g, n_h) exclude each other.
+        table: for each group, by other group, which of their options (n_g, n_h) exclude each other.
         forbidden: combinations of (group, option) that must not all be taken together.
         known: the best choice known, to start from.
     """
@@ -38,8 +38,8 @@ def proven(
     on = {(g, int(o)): model.new_bool_var(f"{g}/{o}") for g, left in alive.items() for o in np.nonzero(left)[0]}
     for g, left in alive.items():
         model.add_exactly_one(on[g, int(o)] for o in np.nonzero(left)[0])
-    for (g, h), excluded in table.items():
-        if g in alive and h in alive:
+    for g, h, excluded in ((g, h, m) for g in alive for h, m in sorted(table[g].items(), key=lambda item: item[0])):
+        if g < h and h in alive:
             for o in np.nonzero(alive[g])[0]:
                 others = np.nonzero(excluded[o] & alive[h])[0]
                 if len(others):

@@ -60,7 +60,8 @@ def _travelled(solution: FoldSolution, base: str, t: Array) -> Array:
     """(k, 3) translation of a base since the open posture."""
     total = np.zeros((len(t), 3))
     for step in solution.steps:
-        total += _sampled(step, step.travel[base], t)
+        if base in step.travel:
+            total += _sampled(step, step.travel[base], t)
     return total
 
 

@@ -14,33 +14,41 @@ All formulas are closed; cost O(samples · panels).
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
-from foldfab.folding.model import Chain
+from foldfab.folding.model import Chain, Shape
 from foldfab.geometry.arrays import Array
 from foldfab.geometry.rotation import cosine, sine
 
 QUARTER = np.pi / 2
+TABLE = 385
+"""Samples of the table by which a motion is inverted."""
+REMEMBERED = 4096
+"""Shapes whose tables are kept: furniture is made of a few, over and over again."""
 
 
-def tilts(chain: Chain, progress: Array) -> Array:
+def tilts(chain: Chain | Shape, progress: Array) -> Array:
     """Tilts (k, m) of the panels at each fold progress (k,), radians."""
     s = np.asarray(progress, dtype=np.float64)[:, None]
-    if chain.mechanism != "in-place" or chain.far is None:
-        ends = chain.turn * np.where(np.arange(len(chain.lengths)) % 2 == 0, 1.0, -1.0)
-        return chain.lean + s * (ends - chain.lean)
-    return _in_place(chain, s)
+    shape = chain if isinstance(chain, Shape) else chain.shape
+    if not shape.comes_down:
+        flat = shape.turn * np.where(np.arange(len(shape.lengths)) % 2 == 0, 1.0, -1.0)
+        return shape.lean + s * (flat - shape.lean)
+    return _in_place(shape, s)
 
 
-def joints(chain: Chain, angles: Array) -> Array:
+def joints(chain: Chain | Shape, angles: Array) -> Array:
     """Hinge axes (k, m + 1, 2) in the plane of the chain relative to the root, for tilts (k, m); a tip last."""
     normal, length = _directions(angles)
-    steps = np.diff(chain.offsets)[:, None] * normal + chain.lengths[:, None] * length
+    offsets, lengths = np.asarray(chain.offsets), np.asarray(chain.lengths)
+    steps = (offsets[1:] - offsets[:-1])[:, None] * normal + lengths[:, None] * length
     start = np.zeros((len(angles), 1, 2))
     return np.concatenate([start, np.cumsum(steps, axis=1)], axis=1)
 
 
-def reach(chain: Chain, progress: Array) -> Array:
+def reach(chain: Chain | Shape, progress: Array) -> Array:
     """Where the last axis stands relative to the root, (k, 2) in the plane of the chain, mm."""
     last: Array = joints(chain, tilts(chain, progress))[:, -1]
     return last
@@ -66,10 +74,39 @@ def peak(chain: Chain) -> tuple[float, float]:
 
     The rise is about N_h (K + g)²/(2 a) · N_h/(N_h + 1) for an upright accordion; 0 where there is none.
     """
-    if chain.mechanism != "in-place" or chain.far is None:
-        return 0.0, 0.0
+    return _peak(chain.shape) if chain.shape.comes_down else (0.0, 0.0)
+
+
+def descent(chain: Chain) -> tuple[Array, Array, int]:
+    """Progress (n,) and height over the open posture (n,) of the far end along the whole fold, and the snap's place."""
+    return _descent(chain.shape)
+
+
+def ends(chain: Chain) -> Array:
+    """(3,) how far the last axis comes from open to folded, mm."""
+    way: Array = _ends(chain.shape) @ np.stack([chain.across, chain.rise])
+    return way
+
+
+@lru_cache(REMEMBERED)
+def _descent(shape: Shape) -> tuple[Array, Array, int]:
+    s = np.linspace(0.0, 1.0, TABLE)
+    height = reach(shape, s)[:, 1]
+    height -= height[0]
+    return s, height, int(np.argmax(height))
+
+
+@lru_cache(REMEMBERED)
+def _ends(shape: Shape) -> Array:
+    both = reach(shape, np.array([0.0, 1.0]))
+    way: Array = both[1] - both[0]
+    return way
+
+
+@lru_cache(REMEMBERED)
+def _peak(shape: Shape) -> tuple[float, float]:
     s = np.linspace(0.0, 0.5, 257)
-    height = reach(chain, s)[:, 1]
+    height = reach(shape, s)[:, 1]
     top = int(np.argmax(height))
     return (float(height[top] - height[0]), float(s[top])) if top else (0.0, 0.0)
 
@@ -79,11 +116,11 @@ def _directions(angles: Array) -> tuple[Array, Array]:
     return np.stack([cos, -sin], axis=-1), np.stack([sin, cos], axis=-1)
 
 
-def _in_place(chain: Chain, s: Array) -> Array:
-    side = np.sign(chain.turn)
-    if side * chain.lean > 0:
-        return _against(-side, abs(chain.lean), chain.lengths[::-1], chain.offsets, s)[:, ::-1]
-    return _against(side, abs(chain.lean), chain.lengths, chain.offsets, s)
+def _in_place(shape: Shape, s: Array) -> Array:
+    side, lengths, offsets = float(np.sign(shape.turn)), np.array(shape.lengths), np.array(shape.offsets)
+    if side * shape.lean > 0:
+        return _against(-side, abs(shape.lean), lengths[::-1], offsets, s)[:, ::-1]
+    return _against(side, abs(shape.lean), lengths, offsets, s)
 
 
 def _against(side: float, lean: float, lengths: Array, offsets: Array, s: Array) -> Array:

@@ -6,7 +6,7 @@ Lengths are print millimetres in the canonical frame (d = -Z); fold progress and
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 from foldfab.geometry.arrays import Array, frozen
@@ -112,6 +112,22 @@ class Modification:
         return self.mechanism == "deleted"
 
 
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """What the motion of a chain depends on, wherever it stands; equal shapes move alike."""
+
+    lean: float
+    """Tilt of the open patch, radians."""
+    turn: float
+    """Tilt of the first panel when folded: ±π/2."""
+    lengths: tuple[float, ...]
+    """(m,) distances between consecutive hinge axes along the panels, mm."""
+    offsets: tuple[float, ...]
+    """(m + 1,) how far each hinge axis stands off the panels' mid-plane, mm."""
+    comes_down: bool
+    """Whether its far end is a base that comes straight down."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Chain:
     """A patch as it folds: rigid panels in a row, from the base that carries it (the anchor) to its far end.
@@ -150,6 +166,8 @@ class Chain:
     """Height of the fixed plinths at the anchor and at the far base, mm (the horizontal cropping of section 5.6)."""
     panel: float
     """K of its own panels, mm: more than the print's where the stack is balanced by thickness (figure 19)."""
+    shape: Shape = field(init=False)
+    """What its motion depends on."""
 
     def __post_init__(self) -> None:
         for name, shape in (("root", (3,)), ("across", (3,)), ("along", (3,)), ("rise", (3,))):
@@ -158,6 +176,9 @@ class Chain:
         object.__setattr__(self, "offsets", frozen(self.offsets, len(self.lengths) + 1))
         object.__setattr__(self, "span", frozen(self.span, 2))
         object.__setattr__(self, "hinge_spans", frozen(self.hinge_spans, len(self.lengths) + 1, 2))
+        comes_down = self.mechanism == "in-place" and self.far is not None
+        lengths, offsets = tuple(self.lengths.tolist()), tuple(self.offsets.tolist())
+        object.__setattr__(self, "shape", Shape(float(self.lean), float(self.turn), lengths, offsets, comes_down))
 
     @property
     def panels(self) -> tuple[str, ...]:
@@ -181,7 +202,7 @@ class Step:
     samples: Array
     """(k,) local times from 0 to 1."""
     travel: dict[str, Array]
-    """By base (all bases), (k, 3) translation since the start of the step, mm."""
+    """By base that moves, (k, 3) translation since the start of the step, mm; bases that move together share one array."""
     fold: dict[str, Array]
     """By patch of the unit that is kept, (k,) fold progress s."""
     play: dict[str, Array]
@@ -190,7 +211,8 @@ class Step:
     def __post_init__(self) -> None:
         n = len(self.samples)
         object.__setattr__(self, "samples", frozen(self.samples, n))
-        object.__setattr__(self, "travel", {k: frozen(v, n, 3) for k, v in self.travel.items()})
+        ways = {id(v): frozen(v, n, 3) for v in self.travel.values()}
+        object.__setattr__(self, "travel", {k: ways[id(v)] for k, v in self.travel.items()})
         object.__setattr__(self, "fold", {k: frozen(v, n) for k, v in self.fold.items()})
         object.__setattr__(self, "play", {k: frozen(v, n) for k, v in self.play.items()})
 

@@ -1,27 +1,32 @@
 """The order in which the units fold: greedy with one-step look-ahead (section 5.5, figure 14).
 
 At each step the unit is taken that minimises C1 + C2: its own cost now, plus the costs of all the others if it were
-folded. Where no unit can fold, the remaining ones are merged into one and fold in place. Quadratic in the units for
-each step; solutions are kept and used again while nothing about their surroundings has changed.
+folded. Where no unit can fold, the remaining ones are merged into one and fold in place.
+
+What a unit can do alone bounds its cost from below. So only those others are solved anew in the look-ahead that would see
+the unit folded, and the look-ahead ends where no other unit can be better. With k units that see each other and n in all
+this takes O(n k) solutions where costs stay at their bounds, and O(n²) of the paper's at worst.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from foldfab.folding.candidates import Problem
-from foldfab.folding.scene import Scene, advanced
-from foldfab.folding.unit_fold import Refusal, UnitFold, fold_unit
+from foldfab.folding.problem import Problem
+from foldfab.folding.repertoire import repertoire
+from foldfab.folding.scene import Scene, advanced, alone
+from foldfab.folding.surroundings import depends_on, look
+from foldfab.folding.unit_fold import Refusal, UnitFold, fold_seen, fold_unit
 from foldfab.folding.units import Unit, merged
 from foldfab.geometry.arrays import Array
 
 REFUSED = 1e3
 """What a unit that cannot fold counts in the look-ahead: more than any cost."""
-
-Memory = dict[tuple[str, frozenset[object]], UnitFold | Refusal]
-"""Solutions by unit and history of the scene."""
+DIGITS = 9
+"""Outlooks that agree to this many digits are the same."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,79 +35,120 @@ class Ordered:
 
     folds: tuple[UnitFold, ...]
     refusals: tuple[Refusal, ...]
+
+
+@dataclass(slots=True, eq=False)
+class _State:
+    """Where the greedy order has come to."""
+
+    problem: Problem
     scene: Scene
+    floor: Mapping[str, float]
+    """By unit, what it costs at least."""
+    rest: dict[str, Unit]
+    now: dict[str, UnitFold | Refusal] = field(default_factory=dict)
+    """What each remaining unit would do now."""
+    sees: dict[str, set[str]] = field(default_factory=dict)
+    """By remaining unit, those whose folding may change what it does."""
+    seen_by: dict[str, set[str]] = field(default_factory=dict)
+    """The same the other way round."""
 
 
-def greedy(problem: Problem, scene: Scene) -> Ordered:
-    """Folds all units of the scene one after another."""
-    rest = list(scene.units)
+def floors(problem: Problem, scene: Scene) -> dict[str, float]:
+    """By unit, what it counts in the search where nothing but itself is there: no order lets it fold for less."""
+    return {u.name: _weight(fold_unit(problem, alone(scene, u), u)) for u in problem.units}
+
+
+def greedy(problem: Problem, scene: Scene, floor: Mapping[str, float]) -> Ordered:
+    """Folds all units of the open scene one after another; `floor` is what each costs at least."""
+    state = _State(problem, scene, floor, {u.name: u for u in problem.units})
+    for unit in problem.units:
+        _look_again(state, unit)
     folds: list[UnitFold] = []
-    memory: Memory = {}
-    while rest:
-        now = {u.name: _solved(problem, scene, u, memory) for u in rest}
-        able = [f for f in now.values() if isinstance(f, UnitFold)]
-        if not able:
-            return _merged(problem, scene, rest, folds, [r for r in now.values() if isinstance(r, Refusal)])
-        best = _best(problem, scene, able, rest, memory)
-        if any(o.variant is not None and o.variant.mechanism == "slanted" for o in best.chosen.values()):
-            final = fold_unit(problem, scene, best.unit, is_final=True)
-            best = final if isinstance(final, UnitFold) else best
+    while state.rest:
+        best = _best(state)
+        if best is None:
+            return _merged(state, folds)
         folds.append(best)
-        scene = _after(scene, best)
-        rest = [u for u in rest if u.name != best.unit.name]
-    return Ordered(tuple(folds), (), scene)
+        state.scene = after(problem, state.scene, best)
+        del state.rest[best.unit.name]
+        for name in sorted(state.seen_by.get(best.unit.name, ())):
+            if name in state.rest:
+                _look_again(state, state.rest[name])
+    return Ordered(tuple(folds), ())
 
 
-def travel(fold: UnitFold, scene: Scene) -> dict[str, Array]:
-    """By base, (k, 3) how it moves during the fold if the furniture's lowest base stays where it is, mm."""
-    root = fold.motion.shift[fold.cluster[scene.scaffold.bases[0].name]]
-    return {base: fold.motion.shift[fold.cluster[base]] - root for base in scene.offset}
+def after(problem: Problem, scene: Scene, fold: UnitFold) -> Scene:
+    """The scene once the unit lies folded; the furniture's lowest base stays where it is."""
+    ends = np.array([fold.motion.shift[b][-1] for b in fold.unit.bases])[fold.cluster]
+    return advanced(scene, fold.unit, fold.chains, ends - ends[0])
 
 
-def last_travel(fold: UnitFold, scene: Scene) -> dict[str, Array]:
-    """By base, (3,) how far it has moved after the fold, mm."""
-    return {base: way[-1] for base, way in travel(fold, scene).items()}
+def travel(problem: Problem, fold: UnitFold) -> dict[str, Array]:
+    """By base that moves, (k, 3) how it does while the furniture's lowest base stays where it is, mm."""
+    ways = [fold.motion.shift[b] for b in fold.unit.bases]
+    root = ways[int(fold.cluster[0])]
+    moving = {i: way - root for i, way in enumerate(ways) if np.abs(way - root).max() > 0}
+    return {b.name: moving[int(k)] for b, k in zip(problem.scaffold.bases, fold.cluster, strict=True) if int(k) in moving}
 
 
-def _best(problem: Problem, scene: Scene, able: list[UnitFold], rest: list[Unit], memory: Memory) -> UnitFold:
-    """The unit with the least C1 + C2, by name where several have."""
-    if len(able) == 1:
-        return able[0]
-    return min(able, key=lambda f: (_outlook(problem, scene, f, rest, memory), f.unit.name))
+def _weight(fold: UnitFold | Refusal) -> float:
+    return fold.weight if isinstance(fold, UnitFold) else REFUSED
 
 
-def _after(scene: Scene, fold: UnitFold) -> Scene:
-    choice = (fold.unit.name, *((p, fold.chosen[p]) for p in sorted(fold.chosen)))
-    return advanced(scene, fold.unit, fold.chains, last_travel(fold, scene), choice)
+def _look_again(state: _State, unit: Unit) -> None:
+    own = repertoire(state.problem, unit)
+    around = look(state.problem, state.scene, own)
+    state.now[unit.name] = fold_seen(state.problem, state.scene, own, around)
+    for name in state.sees.get(unit.name, ()):
+        state.seen_by[name].discard(unit.name)
+    state.sees[unit.name] = depends_on(state.problem, unit, around)
+    for name in state.sees[unit.name]:
+        state.seen_by.setdefault(name, set()).add(unit.name)
 
 
-def _solved(problem: Problem, scene: Scene, unit: Unit, memory: Memory) -> UnitFold | Refusal:
-    key = (unit.name, scene.history)
-    if key not in memory:
-        memory[key] = fold_unit(problem, scene, unit)
-    return memory[key]
+def _best(state: _State) -> UnitFold | None:
+    """The fold with the least C1 + C2, by name where several have."""
+    able = {n: f for n in sorted(state.rest) if isinstance(f := state.now[n], UnitFold)}
+    excess = {n: e for n in state.rest if (e := _weight(state.now[n]) - state.floor[n]) > 0}
+    hopes = dict.fromkeys(able, 0.0)
+    for name in excess:
+        for other in state.sees[name]:
+            if other in hopes and other != name:
+                hopes[other] -= excess[name]
+    best: tuple[float, str] | None = None
+    for name in sorted(able, key=lambda n: (round(hopes[n], DIGITS), n)):
+        if best is not None and best <= (round(hopes[name], DIGITS), name):
+            break
+        change = round(_change(state, able[name]), DIGITS)
+        best = min(best, (change, name)) if best is not None else (change, name)
+    return _final(state, able[best[1]]) if best is not None else None
 
 
-def _outlook(
-    problem: Problem, scene: Scene, fold: UnitFold, rest: list[Unit],
-    memory: Memory,
-) -> float:  # fmt: skip
-    """C1 + C2 of folding this unit now."""
-    after = _after(scene, fold)
-    total = fold.weight
-    for unit in rest:
-        if unit.name != fold.unit.name:
-            later = _solved(problem, after, unit, memory)
-            total += later.weight if isinstance(later, UnitFold) else REFUSED
-    return float(np.round(total, 9))
+def _change(state: _State, fold: UnitFold) -> float:
+    """By how much the others' costs change where this unit folds now."""
+    then = after(state.problem, state.scene, fold)
+    total = 0.0
+    for name in sorted(state.seen_by.get(fold.unit.name, ())):
+        if name in state.rest and name != fold.unit.name:
+            total += _weight(fold_unit(state.problem, then, state.rest[name])) - _weight(state.now[name])
+    return total
 
 
-def _merged(
-    problem: Problem, scene: Scene, rest: list[Unit], folds: list[UnitFold], refusals: list[Refusal]
-) -> Ordered:
-    whole = merged(scene.scaffold, tuple(rest))
-    fold = fold_unit(problem, scene, whole, in_place=True) if len(rest) > 1 else refusals[0]
+def _final(state: _State, fold: UnitFold) -> UnitFold:
+    """The fold as the furniture stands now: what looked the same before may differ in what sticks out of the outline."""
+    own = repertoire(state.problem, fold.unit)
+    around = look(state.problem, state.scene, own)
+    final = fold_seen(state.problem, state.scene, own, around, is_final=True)
+    return final if isinstance(final, UnitFold) else fold
+
+
+def _merged(state: _State, folds: list[UnitFold]) -> Ordered:
+    refusals = [r for r in state.now.values() if isinstance(r, Refusal) and r.unit.name in state.rest]
+    if len(refusals) == 1:
+        return Ordered(tuple(folds), tuple(refusals))
+    whole = merged(state.problem.scaffold, tuple(state.rest.values()))
+    fold = fold_unit(state.problem, state.scene, whole, in_place=True)
     if isinstance(fold, Refusal):
-        return Ordered(tuple(folds), (*refusals, fold) if len(rest) > 1 else (fold,), scene)
-    folds.append(fold)
-    return Ordered(tuple(folds), (), _after(scene, fold))
+        return Ordered(tuple(folds), (*refusals, fold))
+    return Ordered((*folds, fold), ())

@@ -6,52 +6,51 @@ only by what a leaning patch adds. The bounding box, `stay_in_box`, holds for ev
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
-import numpy as np
+from collections.abc import Iterable, Mapping
 
 from foldfab.folding.model import Chain, Thickness
-from foldfab.folding.space import Sweep
+from foldfab.folding.problem import Problem, extent
 from foldfab.geometry.arrays import Array
-from foldfab.geometry.boxes import Boxes, bounds
+from foldfab.geometry.boxes import Boxes
 
 EXPANSION = 0.1
 """In-place folding may stick out of the furniture's outline by this share of its size in that direction."""
 
 
-def sticks_out(furniture: Boxes, chain: Chain, swept: Sweep, thickness: Thickness) -> bool:
-    """Whether a chain that folds in place leaves the outline of the open furniture (n,) along its own normal."""
-    low, high = _extent(furniture, chain.across)
-    near, far = _extent(swept.boxes, chain.across)
-    slack = max(_skin(thickness), EXPANSION * (high - low))
-    return near < low - slack or far > high + slack
+def sticks_out(problem: Problem, chain: Chain, swept: Iterable[Boxes]) -> bool:
+    """Whether a chain that folds in place leaves the outline of the open furniture along its own normal.
+
+    `swept` holds its boxes (frames, n) in each section of its fold.
+    """
+    if chain.mechanism != "in-place":
+        return False
+    low, high = problem.extent_along(chain.across)
+    slack = max(_skin(problem.thickness), EXPANSION * (high - low))
+    reaches = [extent(boxes, chain.across) for boxes in swept]
+    return min(r[0] for r in reaches) < low - slack or max(r[1] for r in reaches) > high + slack
 
 
 def leaves_box(
-    furniture: Boxes, swept: Sweep, clusters: Mapping[str, tuple[Array, Array]], shift: Mapping[str, Array],
-    offset: Array, root: str, thickness: Thickness,
+    problem: Problem, low: Array, high: Array, clusters: Mapping[str, tuple[Array, Array]], shift: Mapping[str, Array],
+    carried: Array,
 ) -> bool:  # fmt: skip
     """Whether a chain, or anything that moves with the unit's bases, leaves the bounding box of the open furniture.
 
     Args:
-        furniture: the open furniture (n,).
-        swept: the chain over time, in the frame of the unit's lowest base.
+        problem: the open furniture.
+        low: (frames, 3) lower corner of the chain, in the frame of the unit's lowest base.
+        high: (frames, 3) upper corner.
         clusters: by base of the unit, lower and upper corner (3,) of what moves with it.
         shift: by base of the unit, (frames, 3) its translation in that frame.
-        offset: (3,) how far the unit has been carried since the open posture.
-        root: the base of the unit that moves with the furniture's lowest base, which stays where it is.
-        thickness: K and g.
+        carried: (frames, 3) how far that frame has been carried since the open posture.
     """
-    low, high = (c.min(0) if i == 0 else c.max(0) for i, c in enumerate(bounds(furniture)))
-    slack = _skin(thickness)
-    carried = offset - shift[root]
-    if ((swept.low + carried[:, None]).min((0, 1)) < low - slack).any():
-        return True
-    if ((swept.high + carried[:, None]).max((0, 1)) > high + slack).any():
+    least, most = problem.outline
+    slack = _skin(problem.thickness)
+    if (low + carried < least - slack).any() or (high + carried > most + slack).any():
         return True
     for base, (near, far) in clusters.items():
         way = shift[base] + carried
-        if (near + way.min(0) < low - slack).any() or (far + way.max(0) > high + slack).any():
+        if (near + way.min(0) < least - slack).any() or (far + way.max(0) > most + slack).any():
             return True
     return False
 
@@ -59,10 +58,3 @@ def leaves_box(
 def _skin(thickness: Thickness) -> float:
     """Knuckles stand this far out of the plates and panels that make up the open furniture."""
     return thickness.panel / 2 + thickness.gap
-
-
-def _extent(boxes: Boxes, direction: Array) -> tuple[float, float]:
-    """Least and greatest coordinate of the boxes along a unit direction (3,)."""
-    middle = boxes.center @ direction
-    reach = (boxes.half * np.abs(boxes.axes @ direction)).sum(-1)
-    return float((middle - reach).min()), float((middle + reach).max())

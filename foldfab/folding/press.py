@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from foldfab.folding.mechanism import peak, reach
+from foldfab.folding.mechanism import descent, peak, reach
 from foldfab.folding.model import Chain
 from foldfab.geometry.arrays import Array, Indices
 
@@ -30,8 +30,6 @@ SETTLED = 4
 """Chains that snap differently move alike again when the leader has come this many times as far as to its snap."""
 CLIMB = 10
 """Samples up to the snap."""
-TABLE = 385
-"""Samples of the table by which a chain's motion is inverted."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -112,11 +110,8 @@ def play_limit(chain: Chain, gap: float) -> float:
 
 def follow_down(chain: Chain, drop: Array) -> Array:
     """Progress (k,) at which the chain's far end has come down by `drop` (k,) mm, on the falling side of its snap."""
-    s = np.linspace(0.0, 1.0, TABLE)
-    height = reach(chain, s)[:, 1]
-    top = int(np.argmax(height))
-    falling = np.minimum.accumulate(height[top:])
-    found: Array = np.interp(-(height[0] - np.asarray(drop)), -falling, s[top:])
+    s, height, top = descent(chain)
+    found: Array = np.interp(np.asarray(drop), -np.minimum.accumulate(height[top:]), s[top:])
     return found
 
 
@@ -207,9 +202,7 @@ def _follow(
     """
     assert chain.far is not None
     drop = down[chain.anchor] - down[chain.far]
-    s = np.linspace(0.0, 1.0, TABLE)
-    height = reach(chain, s)[:, 1] - reach(chain, np.zeros(1))[0, 1]
-    top = int(np.argmax(height))
+    s, height, top = descent(chain)
     moving = np.nonzero(np.abs(drop) > 1e-9)[0]
     own = int(index[moving[0]]) if len(moving) else 0
     is_own, fade = index == own, _fade(climb)

@@ -11,14 +11,15 @@ import numpy as np
 
 from foldfab.folding import basic, press
 from foldfab.folding.basic import Option, Variant
-from foldfab.folding.candidates import PAD_SHARE, Problem, Surroundings, clearances, levels
 from foldfab.folding.mechanism import peak
 from foldfab.folding.model import Chain
 from foldfab.folding.press import Motion
+from foldfab.folding.problem import Problem, clear_height, levels
+from foldfab.folding.prospects import PAD_SHARE
 from foldfab.folding.scene import Scene
 from foldfab.folding.simulate import clashes
+from foldfab.folding.surroundings import Surroundings
 from foldfab.folding.units import Unit
-from foldfab.folding.view import Limits
 
 THICKEST = 1.5
 """Panels may be this many times as thick as the others where that closes a stack flat."""
@@ -36,7 +37,7 @@ class Clash:
 
 
 def realised(
-    problem: Problem, scene: Scene, unit: Unit, around: Surroundings, limits: Limits, chosen: Mapping[str, Option]
+    problem: Problem, scene: Scene, unit: Unit, around: Surroundings, chosen: Mapping[str, Option]
 ) -> tuple[tuple[Chain, ...], Motion] | Clash:
     """The chains and the motion of a choice, or what is wrong with it."""
     if not _stays_connected(problem, scene, unit, chosen):
@@ -44,9 +45,10 @@ def realised(
         return Clash((gone,), "deleting it would cut the furniture in two")
     result: tuple[tuple[Chain, ...], Motion] | Clash = Clash((tuple(chosen),), "")
     for by_thickness in (True, False):
-        made = _balanced(problem, unit, limits, chosen, by_thickness=by_thickness)
+        made = _balanced(problem, unit, around, chosen, by_thickness=by_thickness)
         result = made if isinstance(made, Clash) else _played(problem, unit, around, chosen, *made)
-        if not isinstance(result, Clash):
+        is_thicker = not isinstance(made, Clash) and any(c.panel > problem.thickness.panel for c in made[0])
+        if not isinstance(result, Clash) or not is_thicker:
             break
     return result
 
@@ -67,7 +69,7 @@ def _played(
             beside = _most_unlike(chain, chains)
             blamed = (chain.patch, beside) if beside else tuple(chosen)
             return Clash((blamed,), f"{chain.patch} cannot follow {beside or 'its unit'}", holds_for="any window")
-    met = list(clashes(chains, motion, around, problem.thickness))
+    met = list(clashes(unit, problem.tree.number, chains, motion, around, problem.thickness))
     if met:
         mine = [tuple(p for p in pair if p in chosen) or tuple(chosen) for pair in met]
         return Clash(tuple(dict.fromkeys(mine)), f"{met[0][0]} meets {met[0][1]}", holds_for="wider windows")
@@ -82,16 +84,17 @@ def _most_unlike(chain: Chain, chains: tuple[Chain, ...]) -> str:
 
 
 def _balanced(
-    problem: Problem, unit: Unit, limits: Limits, chosen: Mapping[str, Option], *, by_thickness: bool
+    problem: Problem, unit: Unit, around: Surroundings, chosen: Mapping[str, Option], *, by_thickness: bool
 ) -> tuple[tuple[Chain, ...], dict[str, float]] | Clash:
     """The chains with what lets all of them end flat together, and the ways of the bases.
 
     What a chain lacks to the height of its neighbours is given to its panels, where they would not get thicker than
     `THICKEST` times the others, or to a plinth under its last hinge.
     """
-    clear, thick = clearances(problem, unit), problem.thickness
+    clear = {pair: clear_height(problem, *pair) for pair in _pairs(problem, unit, around)}
+    thick = problem.thickness
     stacks = {p: _stack(problem, p, o.variant) for p, o in chosen.items() if o.variant is not None}
-    least = {pair: clear[pair] - limits[pair][0] for pair in limits if np.isfinite(limits[pair][0])}
+    least = {pair: clear[pair] - flat for pair, (flat, _, _) in around.limits.items() if np.isfinite(flat)}
     for patch, height in stacks.items():
         site = problem.sites[patch]
         if site.far is not None:
@@ -116,6 +119,11 @@ def _balanced(
     return tuple(chains), way
 
 
+def _pairs(problem: Problem, unit: Unit, around: Surroundings) -> set[tuple[str, str]]:
+    held = {(problem.sites[p].anchor, problem.sites[p].far) for p in unit.patches}
+    return {(a, b) for a, b in held if b is not None} | set(around.limits)
+
+
 def _filled(variant: Variant, slack: float, panel: float, *, by_thickness: bool) -> Variant:
     """The variant that takes up `slack` mm more when folded."""
     extra = slack / (variant.hinges + 1)
@@ -135,8 +143,6 @@ def _stays_connected(problem: Problem, scene: Scene, unit: Unit, chosen: Mapping
         return True
     graph: nx.Graph[str] = nx.Graph()
     graph.add_nodes_from(b.name for b in problem.scaffold.bases)
-    for other in scene.units:
-        if other.name in scene.done:
-            gone |= {p for p in other.patches if p not in scene.chains}
+    gone |= scene.gone
     graph.add_edges_from(p.bases for p in problem.scaffold.patches if p.name not in gone and len(p.bases) == 2)
     return bool(nx.is_connected(graph))

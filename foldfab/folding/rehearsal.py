@@ -10,10 +10,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 from foldfab.folding.basic import Variant
-from foldfab.folding.candidates import Problem, surroundings
-from foldfab.folding.ordering import last_travel
-from foldfab.folding.scene import Scene, advanced
+from foldfab.folding.ordering import after
+from foldfab.folding.problem import Problem
+from foldfab.folding.repertoire import repertoire
+from foldfab.folding.scene import Scene, shown
 from foldfab.folding.simulate import clashes
+from foldfab.folding.surroundings import look
 from foldfab.folding.unit_fold import UnitFold
 
 
@@ -27,12 +29,14 @@ def first_clash(problem: Problem, scene: Scene, folds: tuple[UnitFold, ...]) -> 
     """
     order = {patch: i for i, fold in enumerate(folds) for patch in fold.unit.patches}
     variants = {p: o.variant for fold in folds for p, o in fold.chosen.items() if o.variant is not None}
-    now = replace(scene, planned={c.patch: c for fold in folds for c in fold.chains})
     for fold in folds:
-        around = surroundings(problem, now, fold.unit)
-        for pair in clashes(fold.chains, fold.motion, around, problem.thickness):
+        scene = shown(scene, fold.unit, fold.chains, is_folded=False)
+    for fold in folds:
+        around = look(problem, scene, repertoire(problem, fold.unit))
+        numbers = problem.tree.number
+        for pair in clashes(fold.unit, numbers, fold.chains, fold.motion, around, problem.thickness):
             blamed = max((p for p in pair if p in variants), key=lambda p: (order[p], p), default=None)
             if blamed is not None:
                 return blamed, replace(variants[blamed], pads=(0.0, 0.0))
-        now = advanced(now, fold.unit, fold.chains, last_travel(fold, now), fold.unit.name)
+        scene = after(problem, scene, fold)
     return None

@@ -1,27 +1,26 @@
-"""The furniture between two steps of the fold: every other unit open or folded, every base where it now is.
+"""The furniture between two steps of the fold: every unit open or folded, every base where it now is.
 
-To fold one unit means to move the pieces that it holds together against each other: without the unit the furniture
-falls into one *cluster* for each of the unit's bases, and each cluster only translates (section 5.2).
+A scene is a list of rigid solids, each fixed to the base that it moves with, and how far each base has come. To fold a
+unit replaces the solids of its patches and moves bases; everything else is shared with the scene before.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-import networkx as nx
 import numpy as np
 
 from foldfab.folding import anatomy
-from foldfab.folding.model import Chain, Thickness
-from foldfab.folding.site import Site, slab
+from foldfab.folding.model import Chain
+from foldfab.folding.problem import Problem
+from foldfab.folding.site import slab
 from foldfab.folding.units import Unit
-from foldfab.geometry.arrays import Array
-from foldfab.geometry.boxes import Boxes, moved, stacked
-from foldfab.scaffold.model import BasePatch, Scaffold
+from foldfab.geometry.arrays import Array, Indices
+from foldfab.geometry.boxes import Boxes, bounds
 
-State = Literal["base", "foot", "open", "folded"]
+State = Literal["base", "open", "folded"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,114 +30,120 @@ class Solid:
     owner: str
     """The base or the patch it belongs to."""
     state: State
-    base: str
-    """The base it moves with."""
+    base: int
+    """Number of the base it moves with."""
     boxes: Boxes
-    """(n,) where it is now."""
+    """(n,) where it is in the open posture of that base."""
+    low: Array
+    """(3,) lower corner of its bounds."""
+    high: Array
+    """(3,) upper corner."""
+    corners: tuple[Array, Array]
+    """Lower and upper corners (n, 3) of its boxes."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scene:
     """Where everything is."""
 
-    scaffold: Scaffold
-    thickness: Thickness
-    sites: Mapping[str, Site]
-    """By patch."""
-    units: tuple[Unit, ...]
-    offset: Mapping[str, Array]
-    """By base, (3,) how far it has moved since the open posture."""
+    problem: Problem
+    offset: Array
+    """(b, 3) how far each base has moved since the open posture, mm."""
+    solids: tuple[Solid, ...]
+    """Plates first, then the patches' solids."""
+    places: Mapping[str, tuple[int, ...]]
+    """By patch, where its solids are in `solids`."""
     chains: Mapping[str, Chain]
     """The chains of folded units, by patch; a patch of a folded unit that is not here is deleted."""
     done: frozenset[str]
     """Names of the units that are folded."""
-    planned: Mapping[str, Chain] | None = None
-    """The chains of all units where they are known already, to show unfolded patches as they will be."""
-    history: frozenset[object] = frozenset()
-    """What was chosen for each folded unit: two scenes with the same history are the same."""
-    shapes: dict[object, Boxes] = field(default_factory=dict)
-    """Boxes that were made already, by what they show, where they stand in the open furniture."""
+    gone: frozenset[str]
+    """Patches of folded units that are deleted."""
+    low: Array
+    """(n, 3) lower corners of the solids' bounds, like the solids in the open posture of their bases."""
+    high: Array
+    """(n, 3) upper corners."""
+    base: Indices
+    """(n,) the base that each solid moves with, -1 where a place is empty."""
+    shapes: dict[object, tuple[Solid, ...]] = field(default_factory=dict)
+    """Solids that were made already."""
+
+    def moved(self, base: str) -> Array:
+        """(3,) how far a base has come, mm."""
+        shift: Array = self.offset[self.problem.tree.number[base]]
+        return shift
 
 
-def open_scene(scaffold: Scaffold, thickness: Thickness, sites: Mapping[str, Site], units: tuple[Unit, ...]) -> Scene:
+def open_scene(problem: Problem) -> Scene:
     """The furniture before the first step."""
-    offset = {base.name: np.zeros(3) for base in scaffold.bases}
-    return Scene(scaffold, thickness, sites, units, offset, {}, frozenset())
-
-
-def advanced(scene: Scene, unit: Unit, chains: tuple[Chain, ...], travel: Mapping[str, Array], choice: object) -> Scene:
-    """The scene after the unit has folded by a hashable `choice`; `travel` gives each base's (3,) translation."""
-    return replace(
-        scene,
-        offset={base: scene.offset[base] + travel[base] for base in scene.offset},
-        chains={**scene.chains, **{c.patch: c for c in chains}},
-        done=scene.done | {unit.name},
-        history=scene.history | {choice},
-    )
-
-
-def clusters(scene: Scene, unit: Unit) -> dict[str, str]:
-    """By base, the base of `unit` that it moves with."""
-    graph: nx.Graph[str] = nx.Graph()
-    graph.add_nodes_from(scene.offset)
-    for other in scene.units:
-        if other.name != unit.name and not set(other.patches) & set(unit.patches):
-            nx.add_path(graph, other.bases)
-    found = {}
-    for component in nx.connected_components(graph):
-        lead = [base for base in unit.bases if base in component]
-        for base in component:
-            found[base] = lead[0] if lead else unit.bases[0]
-    return found
-
-
-def solids(scene: Scene, unit: Unit) -> list[Solid]:
-    """Everything but the unit's own patches, where it is now."""
-    found = [
-        Solid(base.name, "base", base.name, moved(_plate(scene, base), scene.offset[base.name]))
-        for base in scene.scaffold.bases
+    number = problem.tree.number
+    solids = [
+        _solid(base.name, "base", number[base.name], anatomy.base_boxes(base, problem.thickness))
+        for base in problem.scaffold.bases
     ]
-    for other in scene.units:
-        if set(other.patches) & set(unit.patches):
-            continue
-        for patch in other.patches:
-            found += _patch_solids(scene, patch, is_done=other.name in scene.done)
-    return found
+    places = {}
+    for unit in problem.units:
+        for patch in unit.patches:
+            site = problem.sites[patch]
+            places[patch] = (len(solids),)
+            solids.append(_solid(patch, "open", number[site.anchor], slab(site, problem.thickness)))
+    low, high = np.array([s.low for s in solids]), np.array([s.high for s in solids])
+    base = np.array([s.base for s in solids])
+    still = np.zeros((len(number), 3))
+    return Scene(problem, still, tuple(solids), places, {}, frozenset(), frozenset(), low, high, base)
 
 
-def _patch_solids(scene: Scene, patch: str, *, is_done: bool) -> list[Solid]:
-    site = scene.sites[patch]
-    if not is_done and scene.planned is None:
-        return [Solid(patch, "open", site.anchor, moved(_open(scene, site), scene.offset[site.anchor]))]
-    chain = (scene.chains if is_done or scene.planned is None else scene.planned).get(patch)
-    if chain is None:
-        return []
-    near, far = _chain(scene, chain, progress=1.0 if is_done else 0.0)
-    state: State = "folded" if is_done else "open"
-    found = [Solid(patch, state, chain.anchor, moved(near, scene.offset[chain.anchor]))]
-    if chain.far is not None:
-        found.append(Solid(patch, state, chain.far, moved(far, scene.offset[chain.far])))
-    return found
+def advanced(scene: Scene, unit: Unit, chains: Iterable[Chain], travel: Array) -> Scene:
+    """The scene after the unit has folded by the chains; `travel` (b, 3) is each base's translation, mm."""
+    now = shown(scene, unit, chains, is_folded=True)
+    held = {**scene.chains, **{c.patch: c for c in chains}}
+    gone = scene.gone | {p for p in unit.patches if p not in held}
+    return replace(now, offset=scene.offset + travel, chains=held, done=scene.done | {unit.name}, gone=gone)
 
 
-def _plate(scene: Scene, base: BasePatch) -> Boxes:
-    if base not in scene.shapes:
-        scene.shapes[base] = anatomy.base_boxes(base, scene.thickness)
-    return scene.shapes[base]
+def shown(scene: Scene, unit: Unit, chains: Iterable[Chain], *, is_folded: bool) -> Scene:
+    """The scene with the unit's patches as those chains, open or folded; its other patches are gone."""
+    by_patch = {c.patch: c for c in chains}
+    solids, places = list(scene.solids), dict(scene.places)
+    low, high, base = scene.low, scene.high, scene.base.copy()
+    fresh: list[Solid] = []
+    for patch in unit.patches:
+        base[list(places[patch])] = -1
+        made = _chain_solids(scene, by_patch[patch], is_folded=is_folded) if patch in by_patch else ()
+        start = len(solids) + len(fresh)
+        places[patch] = tuple(range(start, start + len(made)))
+        fresh += made
+    solids += fresh
+    if fresh:
+        low = np.concatenate([low, [s.low for s in fresh]])
+        high = np.concatenate([high, [s.high for s in fresh]])
+        base = np.concatenate([base, [s.base for s in fresh]])
+    return replace(scene, solids=tuple(solids), places=places, low=low, high=high, base=base)
 
 
-def _open(scene: Scene, site: Site) -> Boxes:
-    if site not in scene.shapes:
-        scene.shapes[site] = slab(site, scene.thickness)
-    return scene.shapes[site]
+def alone(scene: Scene, unit: Unit) -> Scene:
+    """The scene in which the unit is all by itself: its patches and its bases."""
+    keep = [i for patch in unit.patches for i in scene.places[patch]]
+    keep += [scene.problem.tree.number[base] for base in unit.bases]
+    base = np.full(len(scene.base), -1)
+    base[keep] = scene.base[keep]
+    return replace(scene, base=base)
 
 
-def _chain(scene: Scene, chain: Chain, progress: float) -> tuple[Boxes, Boxes]:
-    """An open or folded chain with its foot on the anchor, and its foot on the far base."""
-    near, far = (chain, progress), (chain, "far")
-    if near not in scene.shapes:
-        thick = scene.thickness
-        flat = anatomy.moving_boxes(chain, thick, np.array([progress]))[0]
-        scene.shapes[near] = stacked([flat, anatomy.anchor_feet(chain, thick)])
-        scene.shapes[far] = anatomy.far_feet(chain, thick)
-    return scene.shapes[near], scene.shapes[far]
+def _chain_solids(scene: Scene, chain: Chain, *, is_folded: bool) -> tuple[Solid, ...]:
+    """A chain with its foot on the anchor, and its foot on the far base."""
+    key = (chain, is_folded)
+    if key not in scene.shapes:
+        thick, number = scene.problem.thickness, scene.problem.tree.number
+        state: State = "folded" if is_folded else "open"
+        near = anatomy.resting_boxes(chain, thick, 1.0 if is_folded else 0.0)
+        made = [_solid(chain.patch, state, number[chain.anchor], near)]
+        if chain.far is not None:
+            made.append(_solid(chain.patch, state, number[chain.far], anatomy.far_feet(chain, thick)))
+        scene.shapes[key] = tuple(made)
+    return scene.shapes[key]
+
+
+def _solid(owner: str, state: State, base: int, boxes: Boxes) -> Solid:
+    low, high = bounds(boxes)
+    return Solid(owner, state, base, boxes, low.min(0), high.max(0), (low, high))

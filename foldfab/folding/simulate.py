@@ -1,80 +1,117 @@
 """One unit's fold played through with all its parts thick: the check that every choice has to pass.
 
 The conflict graph looks at pairs along a nominal fold; here the chosen chains move exactly as they will, with their
-plinths and windows, against everything else. What meets is reported, and the search learns from it.
+plinths and windows, against everything near. What meets is reported, and the search learns from it. The fold is played
+in scenes of a few frames, so that a chain that stands still in one takes part as one rigid thing.
 """
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
 from foldfab.folding import anatomy
-from foldfab.folding.candidates import Surroundings
 from foldfab.folding.model import Chain, Thickness
 from foldfab.folding.press import Motion
-from foldfab.folding.space import Sweep, hits, sweep
-from foldfab.geometry.arrays import Array
-from foldfab.geometry.boxes import Boxes, grown
+from foldfab.folding.space import Batch, carried, joined, meetings
+from foldfab.folding.surroundings import Surroundings
+from foldfab.folding.units import Unit
+from foldfab.geometry.arrays import Array, Bools, Indices
+from foldfab.geometry.boxes import Boxes, grown, moved, stacked
 
 SKIN = 0.02
 """Parts may come this close to touching in the simulation, mm; the kernel measures the true gap later."""
 STRIDE = 2
 """Every how many samples of a motion are looked at."""
+SCENE = 40
+"""Frames that are looked at in one go."""
 
 
 def clashes(
-    chains: tuple[Chain, ...], motion: Motion, around: Surroundings, thickness: Thickness
-) -> Iterator[tuple[str, str]]:
-    """Pairs of owners that meet: patch and patch, patch and something around, or two bases' clusters."""
+    unit: Unit, number: Mapping[str, int], chains: tuple[Chain, ...], motion: Motion, around: Surroundings,
+    thickness: Thickness,
+) -> Iterator[tuple[str, str]]:  # fmt: skip
+    """Pairs of owners that meet: patch and patch, patch and something around, or two bases' clusters.
+
+    `number` gives the number of every base.
+    """
     picked = np.unique(np.append(np.arange(0, len(motion.samples), STRIDE), len(motion.samples) - 1))
-    movers = {c.patch: _mover(c, motion, picked, thickness) for c in chains}
-    for a, b in itertools.combinations(sorted(movers), 2):
-        if len(hits(movers[a], movers[b])[0]):
-            yield a, b
-    static = {base: _cluster(around, base, motion, picked) for base in motion.shift}
-    for chain in chains:
-        for _, (boxes, owners) in static.items():
-            yield from _met(chain, movers[chain.patch], boxes, owners)
-    for a, b in itertools.combinations(sorted(static), 2):
-        _, i, j = hits(static[a][0], static[b][0])
-        yield from sorted({(static[a][1][p][0], static[b][1][q][0]) for p, q in zip(i, j, strict=True)})
+    own_plates = _own_plates(number, chains, around)
+    met: set[tuple[str, str]] = set()
+    for start in range(0, max(len(picked) - 1, 1), SCENE):
+        frames = picked[start : start + SCENE + 1]
+        moving, resting = _played(chains, motion, frames, thickness)
+        shifts = np.stack([motion.shift[base][frames] for base in unit.bases], axis=1)
+        still = carried(grown(around.boxes, -SKIN), shifts[:, around.group], np.arange(len(around.boxes)))
+        met |= set(_between_chains(chains, moving, resting))
+        for many in (moving, resting):
+            met |= set(_with_surroundings(chains, many, still, around, own_plates))
+        met |= set(_between_clusters(still, around))
+    yield from sorted(met)
 
 
-def _met(chain: Chain, mover: Sweep, boxes: Sweep, owners: list[tuple[str, bool]]) -> Iterator[tuple[str, str]]:
-    own = {chain.anchor, chain.far}
-    _, _, met = hits(mover, boxes)
-    for owner, is_plate in sorted({owners[i] for i in met}):
-        if not (is_plate and owner in own):
-            yield chain.patch, owner
+def _played(
+    chains: tuple[Chain, ...], motion: Motion, frames: Indices, thickness: Thickness
+) -> tuple[Batch | None, Batch | None]:
+    """The chains that fold in these frames, and those that are only carried along."""
+    folding: list[tuple[Boxes, int]] = []
+    carried_along: list[tuple[Boxes, Array, int]] = []
+    for i, chain in enumerate(chains):
+        s = motion.fold[chain.patch][frames]
+        near = motion.shift[chain.anchor][frames]
+        far = motion.shift[chain.far][frames] if chain.far is not None else None
+        if s[0] == s[-1]:
+            parts = [moved(anatomy.resting_boxes(chain, thickness, float(s[0])), near[0])]
+            parts += [moved(anatomy.far_feet(chain, thickness), far[0])] if far is not None else []
+            carried_along.append((stacked(parts), near - near[0], i))
+        else:
+            folding.append((anatomy.swept_boxes(chain, thickness, s, near, far), i))
+    moving = joined(folding, -SKIN) if folding else None
+    if not carried_along:
+        return moving, None
+    boxes = stacked([b for b, _, _ in carried_along])
+    counts = [len(b) for b, _, _ in carried_along]
+    lane = np.repeat([i for _, _, i in carried_along], counts)
+    shift = np.repeat(np.stack([w for _, w, _ in carried_along], axis=1), counts, axis=1)
+    return moving, carried(grown(boxes, -SKIN), shift, lane)
 
 
-def _mover(chain: Chain, motion: Motion, picked: Array, thickness: Thickness) -> Sweep:
-    """Panels, knuckles and feet of a chain over time."""
-    s = motion.fold[chain.patch][picked]
-    near = motion.shift[chain.anchor][picked]
-    panels = anatomy.moving_boxes(chain, thickness, s)
-    parts = [Boxes(panels.center + near[:, None], panels.axes, panels.half)]
-    parts.append(_repeated(anatomy.anchor_feet(chain, thickness), near))
-    if chain.far is not None:
-        parts.append(_repeated(anatomy.far_feet(chain, thickness), motion.shift[chain.far][picked]))
-    boxes = Boxes(*(np.concatenate([getattr(p, f) for p in parts], axis=1) for f in ("center", "axes", "half")))
-    return sweep(grown(boxes, -SKIN), np.zeros(2))
+def _between_chains(
+    chains: tuple[Chain, ...], moving: Batch | None, resting: Batch | None
+) -> Iterator[tuple[str, str]]:
+    count = len(chains)
+    later = np.tril(np.ones((count, count), dtype=bool))
+    same = np.eye(count, dtype=bool)
+    for a, b, excluded in ((moving, moving, later), (moving, resting, same), (resting, resting, later)):
+        if a is None or b is None or (a is resting and moving is None):
+            continue
+        for _, p, q in meetings(a, b, excluded):
+            for i, j in {(int(i), int(j)) for i, j in zip(a.lane[p], b.lane[q], strict=True)}:
+                yield min(chains[i].patch, chains[j].patch), max(chains[i].patch, chains[j].patch)
 
 
-def _cluster(around: Surroundings, base: str, motion: Motion, picked: Array) -> tuple[Sweep, list[tuple[str, bool]]]:
-    """Everything that moves with one base of the unit, and whose it is."""
-    keep = [i for i, s in enumerate(around.owner) if around.cluster[around.solids[s].base] == base]
-    owners = [(around.solids[around.owner[i]].owner, around.solids[around.owner[i]].state == "base") for i in keep]
-    return sweep(_repeated(grown(around.boxes[keep], -SKIN), motion.shift[base][picked]), np.zeros(2)), owners
+def _with_surroundings(
+    chains: tuple[Chain, ...], many: Batch | None, still: Batch, around: Surroundings, own_plates: Bools
+) -> Iterator[tuple[str, str]]:
+    if many is None:
+        return
+    for _, p, q in meetings(many, still, own_plates):
+        for i, box in {(int(i), int(box)) for i, box in zip(many.lane[p], q, strict=True)}:
+            yield chains[i].patch, around.solids[int(around.owner[box])].owner
 
 
-def _repeated(boxes: Boxes, shift: Array) -> Boxes:
-    shape = (len(shift), len(boxes))
-    return Boxes(
-        boxes.center + shift[:, None],
-        np.broadcast_to(boxes.axes, (*shape, 3, 3)),
-        np.broadcast_to(boxes.half, (*shape, 3)),
-    )
+def _between_clusters(still: Batch, around: Surroundings) -> Iterator[tuple[str, str]]:
+    by_group = Batch(still.boxes, around.group, still.low, still.high, still.least, still.most)
+    count = int(around.group.max(initial=0)) + 1
+    for _, p, q in meetings(by_group, by_group, np.tril(np.ones((count, count), dtype=bool))):
+        for a, b in {(int(a), int(b)) for a, b in zip(around.owner[p], around.owner[q], strict=True)}:
+            yield around.solids[a].owner, around.solids[b].owner
+
+
+def _own_plates(number: Mapping[str, int], chains: tuple[Chain, ...], around: Surroundings) -> Bools:
+    """(chains, boxes) the plates that a chain's own hinges stand on."""
+    plate = np.array([s.base if s.state == "base" else -1 for s in around.solids], dtype=np.int64)[around.owner]
+    own = np.array([[number[c.anchor], number[c.far or c.anchor]] for c in chains])
+    found: Bools = (own[:, :, None] == plate).any(1) if len(chains) else np.zeros((0, len(plate)), dtype=bool)
+    return found

@@ -9,21 +9,24 @@ import numpy as np
 
 from foldfab.errors import FoldingError
 from foldfab.folding import anatomy, basic
-from foldfab.folding.bound import lower_bound
-from foldfab.folding.candidates import Problem, is_slantable, variants
 from foldfab.folding.model import FoldSolution, Modification, Step, Thickness
-from foldfab.folding.ordering import Ordered, greedy, travel
+from foldfab.folding.ordering import Ordered, floors, greedy, travel
+from foldfab.folding.problem import Problem
 from foldfab.folding.rehearsal import first_clash
-from foldfab.folding.scene import Scene, advanced, open_scene
-from foldfab.folding.site import Site, sites, slab
+from foldfab.folding.repertoire import repertoire
+from foldfab.folding.scene import open_scene
+from foldfab.folding.site import sites, slab
 from foldfab.folding.soundness import disconnected, rigid_patches
 from foldfab.folding.unit_fold import UnitFold
-from foldfab.folding.units import Unit, decompose
-from foldfab.geometry.boxes import Boxes, stacked
+from foldfab.folding.tree import unit_tree
+from foldfab.folding.units import decompose
+from foldfab.geometry.boxes import bounds, stacked
 from foldfab.scaffold.model import Scaffold
 
 SINGLES = 4
 """How many un-hingeable patches are tried to be disconnected each for itself, before all of them are."""
+NO_MORE = 1e-5
+"""What preferences between options of equal cost may add up to."""
 REHEARSALS = 8
 """How often the fold is solved anew because a rehearsal of the whole has shown a clash; the kernel judges the last."""
 
@@ -57,37 +60,44 @@ def solve(scaffold: Scaffold) -> FoldSolution:
 
 
 def _solved(scaffold: Scaffold, thickness: Thickness) -> FoldSolution:
-    placed = {site.patch.name: site for site in sites(scaffold, thickness)}
-    units = decompose(scaffold)
-    problem = Problem(scaffold, scaffold.recipe.fold, thickness, placed, _furniture(scaffold, thickness, placed))
-    _require_variants(problem, units)
-    scene = open_scene(scaffold, thickness, placed, units)
-    bound = lower_bound(problem, units)
+    problem = posed(scaffold, thickness)
+    _require_variants(problem)
     for _ in range(REHEARSALS):
-        ordered = greedy(problem, scene)
+        scene = open_scene(problem)
+        floor = floors(problem, scene)
+        ordered = greedy(problem, scene, floor)
         if ordered.refusals:
             raise FoldingError(_refused(ordered))
         met = first_clash(problem, scene, ordered.folds)
         if met is None:
-            return _solution(problem, scene, bound, ordered)
-        problem = replace(problem, banned=problem.banned | {met}, forms={}, room={}, solved={})
+            return _solution(problem, floor, ordered)
+        problem = replace(problem, banned=problem.banned | {met}, repertoires={}, solved={})
     told = ", ".join(sorted({patch for patch, _ in problem.banned}))
     raise FoldingError(f"no folding solution found: {told} stay in the way of what folds before; try another thickness")
 
 
-def _furniture(scaffold: Scaffold, thickness: Thickness, placed: Mapping[str, Site]) -> Boxes:
-    """The open furniture with thickness (n,)."""
+def posed(scaffold: Scaffold, thickness: Thickness) -> Problem:
+    """The problem that a scaffold poses."""
+    placed = {site.patch.name: site for site in sites(scaffold, thickness)}
+    units = decompose(scaffold)
+    tree = unit_tree(tuple(base.name for base in scaffold.bases), units)
     plates = [anatomy.base_boxes(base, thickness) for base in scaffold.bases]
-    return stacked([*plates, *(slab(site, thickness) for site in placed.values())])
+    furniture = stacked([*plates, *(slab(site, thickness) for site in placed.values())])
+    low, high = bounds(furniture)
+    return Problem(
+        scaffold, scaffold.recipe.fold, thickness, placed, units, tree, {p: u for u in units for p in u.patches},
+        {base.name: anatomy.faces(base, thickness) for base in scaffold.bases}, furniture, (low.min(0), high.max(0)),
+    )  # fmt: skip
 
 
-def _require_variants(problem: Problem, units: tuple[Unit, ...]) -> None:
+def _require_variants(problem: Problem) -> None:
     """A patch too short for any hinge at this scale is an error of its own: printing larger or thinner helps."""
     short = []
-    for unit in units:
+    for unit in problem.units:
+        own = repertoire(problem, unit)
         for name in unit.patches:
             site = problem.sites[name]
-            if not variants(problem, site, may_slant=is_slantable(problem, unit)):
+            if not own.plain[name]:
                 short.append(f"{name} ({site.clear:.1f} mm between its bases)")
     rigid = [name for name, site in problem.sites.items() if not site.patch.hingeable and site.far is not None]
     if rigid and len(short) == len(problem.sites):
@@ -108,26 +118,28 @@ def _refused(ordered: Ordered) -> str:
     return "no folding solution: " + "; ".join(told)
 
 
-def _solution(problem: Problem, scene: Scene, bound: float, ordered: Ordered) -> FoldSolution:
-    steps = _steps(scene, ordered.folds)
+def _solution(problem: Problem, floor: Mapping[str, float], ordered: Ordered) -> FoldSolution:
     chains = tuple(sorted((c for f in ordered.folds for c in f.chains), key=lambda c: c.patch))
     changed = [_modification(problem, fold, patch) for fold in ordered.folds for patch in fold.unit.patches]
     changed.sort(key=lambda m: m.patch)
     cost = sum(m.cost for m in changed)
-    # Two sums of the same terms differ in their last digits; a bound that is truly above the cost must show.
-    bound = cost if abs(bound - cost) < 1e-9 else bound
-    notes = _notes(problem, ordered)
-    return FoldSolution(problem.scaffold, problem.thickness, chains, tuple(changed), steps, cost, bound, notes)
+    # What was spent beyond the floor, preferences left aside, is what another solution could save at most.
+    spent = sum(fold.weight for fold in ordered.folds) - sum(floor.values())
+    bound = cost if spent < NO_MORE else max(cost - spent, 0.0)
+    steps = _steps(problem, ordered.folds)
+    return FoldSolution(
+        problem.scaffold, problem.thickness, chains, tuple(changed), steps, cost, bound, _notes(problem, ordered)
+    )
 
 
-def _steps(scene: Scene, folds: tuple[UnitFold, ...]) -> tuple[Step, ...]:
+def _steps(problem: Problem, folds: tuple[UnitFold, ...]) -> tuple[Step, ...]:
     total = sum(fold.motion.path for fold in folds)
     steps, start = [], 0.0
     for i, fold in enumerate(folds):
         end = 1.0 if i == len(folds) - 1 else start + fold.motion.path / total
-        m, ways = fold.motion, travel(fold, scene)
+        m = fold.motion
+        ways = travel(problem, fold)
         steps.append(Step(fold.unit.name, fold.unit.patches, start, end, m.samples, ways, m.fold, m.play))
-        scene = advanced(scene, fold.unit, fold.chains, {b: w[-1] for b, w in ways.items()}, fold.unit.name)
         start = end
     return tuple(steps)
 

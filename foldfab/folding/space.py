@@ -1,120 +1,214 @@
-"""Which pieces of a patch have room to move (sections 5.4 to 5.6): swept boxes against swept boxes.
+"""Swept boxes against swept boxes: what meets when, and which pieces of it (sections 5.4 to 5.6).
 
-A patch is cut into N_s pieces along its hinge direction; whether a piece meets an obstacle does not depend on the
-other pieces, so one sweep of the whole patch answers for all windows. Broad phase on bounds, then the exact test.
+Everything that moves together is looked at together, as one batch of boxes over the same frames, whose boxes belong to
+*lanes* (a way in which one patch may fold). A patch is cut into N_s pieces along its hinge direction; whether a piece
+meets something does not depend on the other pieces, so one sweep of the whole patch answers for all windows.
+
+Broad phase on bounds over time, then on bounds frame by frame, then the exact separating-axis test. Boxes of parallel
+hinge directions are prisms along the same line, so that which of their pieces meet follows from intervals alone.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from foldfab.geometry.arrays import Array, Bools, Indices
-from foldfab.geometry.boxes import Boxes, bounds, overlaps
+from foldfab.geometry.boxes import Boxes, bounds, close_bounds, overlaps
+
+PARALLEL = 1.0 - 1e-9
+"""Cosine above which two hinge directions are the same line."""
+CHUNK = 20_000
+"""Pairs of boxes that are looked at in one go, for the sake of memory."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Sweep:
-    """Boxes of one mover over time; the second axis of every box runs along the hinge direction."""
+class Batch:
+    """Boxes over time; the second axis of every box runs along its hinge direction."""
 
     boxes: Boxes
-    """(frames, n)."""
-    cuts: Array
-    """(N_s + 1,) cutting points along the hinge direction in absolute coordinates, mm."""
+    """(frames, n); one frame for what stands still."""
+    lane: Indices
+    """(n,) what each box belongs to."""
     low: Array
     """(frames, n, 3) lower corners of the bounds."""
     high: Array
     """(frames, n, 3) upper corners."""
+    least: Array
+    """(n, 3) lower corners over all frames."""
+    most: Array
+    """(n, 3) upper corners over all frames."""
+
+    def __len__(self) -> int:
+        return len(self.lane)
 
 
-def sweep(boxes: Boxes, cuts: Array) -> Sweep:
-    """A sweep of boxes (frames, n) with their bounds."""
+def batch(boxes: Boxes, lane: Indices) -> Batch:
+    """A batch of boxes (frames, n) with their bounds."""
     low, high = bounds(boxes)
-    return Sweep(boxes, cuts, low, high)
+    return Batch(boxes, lane, low, high, low.min(0), high.max(0))
 
 
-def hits(a: Sweep, b: Sweep) -> tuple[Indices, Indices, Indices]:
-    """Frame, box of `a` and box of `b` (k,) of all overlaps; a sweep of one frame stands still."""
-    none = np.zeros(0, dtype=np.int64)
-    if (a.low.min((0, 1)) > b.high.max((0, 1))).any() or (b.low.min((0, 1)) > a.high.max((0, 1))).any():
-        return none, none, none
-    i = np.nonzero(_may_meet(a, b))[0]
-    j = np.nonzero(_may_meet(b, a))[0]
-    if not len(i) or not len(j):
-        return none, none, none
-    near = (a.low[:, i, None, :] <= b.high[:, None, j, :]).all(-1) & (
-        b.low[:, None, j, :] <= a.high[:, i, None, :]
-    ).all(-1)
-    frame, p, q = np.nonzero(near)
-    p, q = i[p], j[q]
-    hit = overlaps(a.boxes[_at(a, frame), p], b.boxes[_at(b, frame), q])
-    return frame[hit], p[hit], q[hit]
+def joined(parts: list[tuple[Boxes, int]], margin: float) -> Batch:
+    """One batch of several movers (frames, n_i) with their lanes, every face moved outward by `margin` mm."""
+    center = np.concatenate([boxes.center for boxes, _ in parts], axis=1)
+    axes = np.concatenate([boxes.axes for boxes, _ in parts], axis=1)
+    half = np.maximum(np.concatenate([boxes.half for boxes, _ in parts], axis=1) + margin, 0.0)
+    lane = np.repeat([number for _, number in parts], [boxes.center.shape[1] for boxes, _ in parts])
+    return batch(Boxes(center, axes, half), lane)
 
 
-def blocked(a: Sweep, b: Sweep) -> tuple[Bools, Indices]:
-    """Which pieces (N_s,) of `a` meet `b`, and the boxes of `b` that are met."""
-    frame, p, q = hits(a, b)
-    if not len(frame):
-        return np.zeros(len(a.cuts) - 1, dtype=bool), np.zeros(0, dtype=np.int64)
-    pieces = _pieces(a.boxes[_at(a, frame), p], a.cuts)
-    others = b.boxes[_at(b, frame), q]
-    wide = Boxes(others.center[:, None], others.axes[:, None], others.half[:, None])
-    met = overlaps(pieces, _shaped(wide, pieces.half.shape[:-1])) & (pieces.half[..., 1] > 0)
-    found: Bools = np.logical_or.reduce(met, axis=0)
-    return found, np.unique(q[np.logical_or.reduce(met, axis=1)])
+def carried(boxes: Boxes, shift: Array, lane: Indices) -> Batch:
+    """A batch of rigid boxes (n,) that are translated by `shift` (frames, n, 3)."""
+    low, high = bounds(boxes)
+    shape = shift.shape[:2]
+    spread = Boxes(
+        boxes.center + shift, np.broadcast_to(boxes.axes, (*shape, 3, 3)), np.broadcast_to(boxes.half, (*shape, 3))
+    )
+    return Batch(spread, lane, low + shift, high + shift, low + shift.min(0), high + shift.max(0))
 
 
-def conflicts(a: Sweep, b: Sweep) -> Bools:
-    """Which pieces of `a` meet which pieces of `b`, (N_s, N_s)."""
-    frame, p, q = hits(a, b)
-    count = len(a.cuts) - 1
-    if not len(frame):
-        return np.zeros((count, count), dtype=bool)
-    first = _pieces(a.boxes[_at(a, frame), p], a.cuts)
-    second = _pieces(b.boxes[_at(b, frame), q], b.cuts)
-    left = Boxes(first.center[:, :, None], first.axes[:, :, None], first.half[:, :, None])
-    right = Boxes(second.center[:, None], second.axes[:, None], second.half[:, None])
-    shape = (len(frame), count, count)
-    left, right = _shaped(left, shape), _shaped(right, shape)
-    met = overlaps(left, right) & (left.half[..., 1] > 0) & (right.half[..., 1] > 0)
-    found: Bools = np.logical_or.reduce(met, axis=0)
-    return found
+def still(boxes: Boxes, frames: int) -> Boxes:
+    """Boxes (n,) repeated over frames."""
+    shape = (frames, len(boxes))
+    return Boxes(
+        np.broadcast_to(boxes.center, (*shape, 3)), np.broadcast_to(boxes.axes, (*shape, 3, 3)),
+        np.broadcast_to(boxes.half, (*shape, 3)),
+    )  # fmt: skip
 
 
-def window_blocked(pieces: Bools, window: tuple[int, int]) -> bool:
-    """Whether a window holds a blocked piece."""
-    return bool(pieces[window[0] : window[1]].any())
+def meetings(a: Batch, b: Batch, excluded: Bools | None = None) -> Iterator[tuple[Indices, Indices, Indices]]:
+    """Frame, box of `a` and box of `b` (k,) of all overlaps, in chunks.
+
+    `excluded` (lanes of a, lanes of b) says which lanes are never compared.
+    """
+    if not len(a) or not len(b):
+        return
+    i, j = close_bounds(a.least, a.most, b.least, b.most)
+    if excluded is not None:
+        keep = ~excluded[a.lane[i], b.lane[j]]
+        i, j = i[keep], j[keep]
+    for start in range(0, len(i), CHUNK):
+        p, q = i[start : start + CHUNK], j[start : start + CHUNK]
+        near = (a.low[:, p] <= b.high[:, q]).all(-1) & (b.low[:, q] <= a.high[:, p]).all(-1)
+        frame, pair = np.nonzero(near)
+        if not len(frame):
+            continue
+        p, q = p[pair], q[pair]
+        hit = overlaps(_at(a, frame, p), _at(b, frame, q))
+        if hit.any():
+            yield frame[hit], p[hit], q[hit]
 
 
-def window_conflicts(pieces: Bools, windows: tuple[tuple[int, int], ...]) -> Bools:
-    """Which windows of one patch conflict with which of the other, (w, w), from its pieces (N_s, N_s)."""
-    total = np.zeros((pieces.shape[0] + 1, pieces.shape[1] + 1), dtype=np.int64)
-    total[1:, 1:] = pieces.cumsum(0).cumsum(1)
-    a, b = np.array(windows).T
-    inside = total[b][:, b] - total[a][:, b] - total[b][:, a] + total[a][:, a]
-    found: Bools = inside > 0
-    return found
+def blocked(a: Batch, cuts: Array, b: Batch, excluded: Bools | None = None) -> tuple[Bools, Indices, Indices]:
+    """Which pieces of each lane of `a` meet `b`.
+
+    Args:
+        a: the lanes.
+        cuts: (lanes, N_s + 1) cutting points of each lane along its hinge direction, absolute coordinates, mm.
+        b: what stands around them.
+        excluded: which lanes of a and b are never compared.
+
+    Returns:
+        (lanes, N_s), and the lane and box of `b` of each meeting (k,), (k,), each once.
+    """
+    found = np.zeros((len(cuts), cuts.shape[1] - 1), dtype=bool)
+    lanes, others = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
+    for frame, p, q in meetings(a, b, excluded):
+        frame, p, q = _once(a, b, frame, p, q)
+        box = _at(a, frame, p)
+        pieces = _pieces(box, cuts[a.lane[p]])
+        shape = pieces.half.shape[:-1]
+        other = _at(b, frame, q)
+        wide = Boxes(other.center[:, None], other.axes[:, None], other.half[:, None])
+        met = overlaps(pieces, _shaped(wide, shape)) & (pieces.half[..., 1] > 0)
+        row, piece = np.nonzero(met)
+        found[a.lane[p[row]], piece] = True
+        lanes.append(a.lane[p[row]])
+        others.append(q[row])
+    pairs = np.unique(np.stack([np.concatenate(lanes), np.concatenate(others)]), axis=1)
+    return found, pairs[0], pairs[1]
 
 
-def _at(s: Sweep, frame: Indices) -> Indices:
-    return frame if len(s.low) > 1 else np.zeros_like(frame)
+def conflicts(a: Batch, b: Batch, cuts: Array, excluded: Bools) -> dict[tuple[int, int], Bools]:
+    """By lane of `a` and lane of `b` that meet, which of their pieces do (N_s, N_s)."""
+    steps = cuts.shape[1] - 1
+    found: dict[tuple[int, int], Bools] = {}
+    for frame, p, q in meetings(a, b, excluded):
+        frame, p, q = _once(a, b, frame, p, q)
+        first, second = _at(a, frame, p), _at(b, frame, q)
+        met = _pieces_met(first, cuts[a.lane[p]], second, cuts[b.lane[q]])
+        code = a.lane[p] * len(cuts) + b.lane[q]
+        pairs, place = np.unique(code, return_inverse=True)
+        table = np.zeros((len(pairs), steps, steps), dtype=bool)
+        row, s, t = np.nonzero(met)
+        table[place[row], s, t] = True
+        for pair, own in zip(pairs, table, strict=True):
+            key = (int(pair) // len(cuts), int(pair) % len(cuts))
+            found[key] = found[key] | own if key in found else own
+    return {key: own for key, own in found.items() if own.any()}
 
 
-def _may_meet(a: Sweep, b: Sweep) -> Bools:
-    low, high = b.low.min((0, 1)), b.high.max((0, 1))
-    found: Bools = ((a.low.min(0) <= high) & (a.high.max(0) >= low)).all(-1)
-    return found
+def _pieces_met(a: Boxes, cuts_a: Array, b: Boxes, cuts_b: Array) -> Bools:
+    """Which pieces of overlapping boxes (k,) meet, (k, N_s, N_s)."""
+    low_a, high_a = _intervals(a, cuts_a)
+    low_b, high_b = _intervals(b, cuts_b)
+    cosine = np.einsum("kj,kj->k", a.axes[:, 1], b.axes[:, 1])
+    same = np.abs(cosine) > PARALLEL
+    # On the line of `a`, where `b` may run the other way.
+    sign = np.sign(cosine)[:, None]
+    low, high = np.minimum(sign * low_b, sign * high_b), np.maximum(sign * low_b, sign * high_b)
+    met: Bools = (low_a[:, :, None] <= high[:, None]) & (low[:, None] <= high_a[:, :, None])
+    met &= (high_a > low_a)[:, :, None] & (high_b > low_b)[:, None]
+    rest = np.nonzero(~same)[0]
+    if len(rest):
+        met[rest] = _crossing(_pieces(a[rest], cuts_a[rest]), _pieces(b[rest], cuts_b[rest]))
+    return met
+
+
+def _crossing(first: Boxes, second: Boxes) -> Bools:
+    steps = first.half.shape[1]
+    shape = (len(first), steps, steps)
+    left = _shaped(Boxes(first.center[:, :, None], first.axes[:, :, None], first.half[:, :, None]), shape)
+    right = _shaped(Boxes(second.center[:, None], second.axes[:, None], second.half[:, None]), shape)
+    met: Bools = overlaps(left, right) & (left.half[..., 1] > 0) & (right.half[..., 1] > 0)
+    return met
+
+
+def _once(
+    a: Batch, b: Batch, frame: Indices, p: Indices, q: Indices
+) -> tuple[Indices, Indices, Indices]:
+    """Every pair of parallel boxes once: which of their pieces meet is the same at all times."""
+    first, second = _at(a, frame, p), _at(b, frame, q)
+    same = np.abs(np.einsum("kj,kj->k", first.axes[:, 1], second.axes[:, 1])) > PARALLEL
+    code = p * len(b) + q
+    keep = ~same
+    _, index = np.unique(code[same], return_index=True)
+    keep[np.nonzero(same)[0][index]] = True
+    return frame[keep], p[keep], q[keep]
+
+
+def _at(s: Batch, frame: Indices, box: Indices) -> Boxes:
+    return s.boxes[frame if len(s.low) > 1 else np.zeros_like(frame), box]
+
+
+def _intervals(boxes: Boxes, cuts: Array) -> tuple[Array, Array]:
+    """Where the pieces of boxes (k,) begin and end (k, N_s) along the boxes' hinge direction; empty ones in reverse."""
+    middle = np.einsum("kj,kj->k", boxes.center, boxes.axes[:, 1])
+    low = np.maximum((middle - boxes.half[:, 1])[:, None], cuts[:, :-1])
+    high = np.minimum((middle + boxes.half[:, 1])[:, None], cuts[:, 1:])
+    return low, high
 
 
 def _pieces(boxes: Boxes, cuts: Array) -> Boxes:
     """Each box (k,) cut into pieces (k, N_s); where a piece is empty its half length is 0."""
     along = boxes.axes[:, 1]
     middle = np.einsum("kj,kj->k", boxes.center, along)
-    low = np.maximum((middle - boxes.half[:, 1])[:, None], cuts[:-1])
-    high = np.minimum((middle + boxes.half[:, 1])[:, None], cuts[1:])
+    low, high = _intervals(boxes, cuts)
     center = boxes.center[:, None] + along[:, None] * ((low + high) / 2 - middle[:, None])[..., None]
-    half = np.repeat(boxes.half[:, None], len(cuts) - 1, axis=1)
+    half = np.repeat(boxes.half[:, None], cuts.shape[1] - 1, axis=1)
     half[..., 1] = np.maximum((high - low) / 2, 0.0)
     return Boxes(center, np.broadcast_to(boxes.axes[:, None], (*half.shape, 3)), half)
 

@@ -67,15 +67,19 @@ def bounds(boxes: Boxes) -> tuple[Array, Array]:
 
 def close_pairs(a: Boxes, b: Boxes) -> tuple[Indices, Indices]:
     """Indices (k,), (k,) into two flat collections of the pairs that overlap."""
-    low_a, high_a = bounds(a)
-    low_b, high_b = bounds(b)
-    near = np.ones((len(a), len(b)), dtype=bool)
+    i, j = close_bounds(*bounds(a), *bounds(b))
+    hit = overlaps(a[i], b[j])
+    return i[hit], j[hit]
+
+
+def close_bounds(low_a: Array, high_a: Array, low_b: Array, high_b: Array) -> tuple[Indices, Indices]:
+    """Indices (k,), (k,) of the pairs of axis-aligned bounds, corners (n, 3) and (m, 3), that overlap."""
+    near = np.ones((len(low_a), len(low_b)), dtype=bool)
     for k in range(3):
         near &= low_a[:, None, k] <= high_b[None, :, k]
         near &= low_b[None, :, k] <= high_a[:, None, k]
     i, j = np.nonzero(near)
-    hit = overlaps(a[i], b[j])
-    return i[hit], j[hit]
+    return i, j
 
 
 def overlaps(a: Boxes, b: Boxes) -> Bools:

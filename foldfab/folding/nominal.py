@@ -1,0 +1,47 @@
+"""The nominal fold of a unit: how its bases would come down if every chain were light (section 5.4, figure 11a).
+
+The conflict graph is drawn along it, before anything is chosen. The time of the unit falls into sections, from the start
+of one base to the start of the next; each has the same number of frames.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from foldfab.folding import press
+from foldfab.folding.problem import Problem, clearances, levels
+from foldfab.folding.units import Unit
+from foldfab.geometry.arrays import Array
+
+FRAMES = 17
+"""Instants of each section at which clashes are looked for."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Nominal:
+    """How the bases of a unit come down, by section."""
+
+    down: Mapping[str, Array]
+    """By base, (sections, FRAMES) translation along Z, mm."""
+
+    @property
+    def sections(self) -> int:
+        """How many sections there are."""
+        return len(next(iter(self.down.values())))
+
+
+def nominal(problem: Problem, unit: Unit) -> Nominal:
+    """The nominal fold of a unit; a unit of T-scaffolds has one section in which its base stands still."""
+    stack = problem.thickness.stack(2, has_upper_base=True)
+    clear = clearances(problem, unit)
+    way = press.ways(unit.bases, dict.fromkeys(clear, stack), clear, levels(problem, unit))
+    marks = sorted({round(w, 6) for w in way.values()} | {0.0}, reverse=True)
+    if not clear or len(marks) == 1:
+        return Nominal({b: np.zeros((1, FRAMES)) for b in unit.bases})
+    turn = 1 - np.cos(np.linspace(0.0, np.pi / 2, FRAMES))
+    level = np.array([a + (b - a) * turn for a, b in itertools.pairwise(marks)])
+    return Nominal({b: np.minimum(level, way[b]) - way[b] for b in unit.bases})

@@ -1,0 +1,84 @@
+"""The folding options of each patch as one table: its lanes, with each window of the patch, and its deletion last.
+
+Prices are eq. 3 weighted by eq. 1; in the search deletion counts many times its price, and options of equal price are
+told apart by small preferences.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from foldfab.folding import basic
+from foldfab.folding.basic import Option
+from foldfab.folding.conflict import windows_table
+from foldfab.folding.problem import Problem
+from foldfab.folding.prospects import Prospects
+from foldfab.folding.repertoire import Lane, awkwardness
+from foldfab.geometry.arrays import Array, Bools
+
+DELETION = 100.0
+"""What deleting a patch counts in the search, times its importance, instead of eq. 3: nobody wants a shelf without its
+wall because that is cheaper than a hinge. The cost that is reported is the paper's."""
+PREFERENCE = 1e-6
+"""Weight of the preferences that decide between options of equal cost: small plinths, staying within the outline."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Options:
+    """The options of one patch in some surroundings."""
+
+    patch: str
+    lanes: tuple[Lane, ...]
+    price: Array
+    """(n,) λ · eq. 3."""
+    weight: Array
+    """(n,) what each counts in the search; infinite where it is out of the question."""
+    windows: tuple[tuple[int, int], ...]
+
+    def __getitem__(self, index: int) -> Option:
+        price = float(self.price[index])
+        if index == len(self.price) - 1:
+            return Option(None, (0, 0), price)
+        lane, window = divmod(index, len(self.windows))
+        return Option(self.lanes[lane].variant, self.windows[window], price)
+
+    def like(self, index: int, *, wider: bool) -> list[int]:
+        """The options of the same lane, of any window, or of windows at least as wide that hold this one's."""
+        lane, own = divmod(index, len(self.windows))
+        low, high = self.windows[own] if wider else (len(self.windows), -1)
+        start = lane * len(self.windows)
+        return [start + w for w, (a, b) in enumerate(self.windows) if a <= low and b >= high]
+
+
+def options_of(problem: Problem, found: Prospects, offset: Array) -> dict[str, Options]:
+    """The options of every patch of a unit that has been carried by `offset` (3,) since the open posture, mm."""
+    steps = problem.options.shrink_steps
+    windows = basic.windows(steps)
+    inside = windows_table(windows, steps)
+    return {
+        patch: _options(problem, patch, lanes, found.blocked, windows, inside, offset)
+        for patch, lanes in found.lanes.items()
+    }
+
+
+def _options(
+    problem: Problem, patch: str, lanes: tuple[Lane, ...], blocked: Mapping[int, Bools],
+    windows: tuple[tuple[int, int], ...], inside: Array, offset: Array,
+) -> Options:  # fmt: skip
+    site, options = problem.sites[patch], problem.options
+    kept = np.array([b - a for a, b in windows]) / options.shrink_steps
+    hinges = np.array([x.variant.hinges for x in lanes], dtype=np.float64)
+    splits = options.alpha * hinges / options.max_hinges
+    price = site.importance * (splits[:, None] + (1 - options.alpha) * (1 - kept) ** 2)
+    taken = np.array([blocked[x.number] for x in lanes], dtype=np.float32).reshape(len(lanes), inside.shape[1])
+    narrow = basic.too_narrow(site, windows, options.shrink_steps, problem.thickness)
+    out = (taken @ inside.T > 0) | narrow
+    extra = PREFERENCE * awkwardness(problem, lanes, offset)[:, None]
+    weight = np.where(out, np.inf, price + extra)
+    gone = site.importance * basic.cost(0, 0.0, options)
+    return Options(
+        patch, lanes, np.append(price.ravel(), gone), np.append(weight.ravel(), DELETION * site.importance), windows
+    )

@@ -1,0 +1,103 @@
+"""What stays the same while the units of a scaffold are folded one after another, and what is remembered about it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from foldfab.folding import anatomy, basic
+from foldfab.folding.basic import Variant
+from foldfab.folding.model import Thickness
+from foldfab.folding.site import Site
+from foldfab.folding.tree import UnitTree
+from foldfab.folding.units import Unit
+from foldfab.geometry.arrays import Array
+from foldfab.geometry.boxes import Boxes
+from foldfab.recipe.model import FoldOptions
+from foldfab.scaffold.model import Scaffold
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Problem:
+    """A scaffold with thickness, its units, and a memory that only ever grows."""
+
+    scaffold: Scaffold
+    options: FoldOptions
+    thickness: Thickness
+    sites: Mapping[str, Site]
+    """By patch."""
+    units: tuple[Unit, ...]
+    tree: UnitTree
+    """How the units hang together."""
+    unit_of: Mapping[str, Unit]
+    """By patch."""
+    faces: Mapping[str, anatomy.Face]
+    """By base, the faces of its plate."""
+    furniture: Boxes
+    """(n,) the open furniture with thickness."""
+    outline: tuple[Array, Array]
+    """Lower and upper corner (3,) of the open furniture, mm."""
+    banned: frozenset[tuple[str, Variant]] = frozenset()
+    """Variants, without plinths, that a rehearsal of the whole fold has shown to be in the way."""
+    repertoires: dict[Unit, Any] = field(default_factory=dict)
+    """What the patches of each unit can do, by unit."""
+    solved: dict[object, Any] = field(default_factory=dict)
+    """Solutions of units, by all that they depend on."""
+    extents: dict[bytes, tuple[float, float]] = field(default_factory=dict)
+    """By direction, between which coordinates the open furniture lies, mm."""
+
+    def extent_along(self, direction: Array) -> tuple[float, float]:
+        """Least and greatest coordinate of the open furniture along a unit direction (3,), mm."""
+        key = direction.tobytes()
+        if key not in self.extents:
+            self.extents[key] = extent(self.furniture, direction)
+        return self.extents[key]
+
+
+def variants(problem: Problem, unit: Unit, patch: str) -> tuple[Variant, ...]:
+    """The variants without plinths that a patch of the unit may fold by."""
+    site = problem.sites[patch]
+    found = basic.variants(site, problem.options, problem.thickness, may_slant=is_slantable(problem, unit))
+    return tuple(v for v in found if (patch, v) not in problem.banned)
+
+
+def is_slantable(problem: Problem, unit: Unit) -> bool:
+    """Whether all basic scaffolds of the unit are H-scaffolds that share the same pair of bases."""
+    return len(unit.bases) == 2 and all(problem.sites[p].far is not None for p in unit.patches)
+
+
+def clearances(problem: Problem, unit: Unit) -> dict[tuple[str, str], float]:
+    """By (anchor, far) of the unit's H-scaffolds, the clear height between the faces of the two bases, mm."""
+    return {
+        (a, b): problem.faces[b].bottom - problem.faces[a].top for a, b in sorted({_pair(s) for s in held(problem, unit)})
+    }
+
+
+def clear_height(problem: Problem, low: str, high: str) -> float:
+    """The clear height between two bases of the open furniture, mm."""
+    return problem.faces[high].bottom - problem.faces[low].top
+
+
+def levels(problem: Problem, unit: Unit) -> dict[str, float]:
+    """Heights of the unit's bases above its lowest one, mm."""
+    return {b: problem.faces[b].top - problem.faces[unit.bases[0]].top for b in unit.bases}
+
+
+def held(problem: Problem, unit: Unit) -> list[Site]:
+    """The sites of the unit's H-scaffolds."""
+    return [problem.sites[p] for p in unit.patches if problem.sites[p].far is not None]
+
+
+def extent(boxes: Boxes, direction: Array) -> tuple[float, float]:
+    """Least and greatest coordinate of the boxes along a unit direction (3,)."""
+    middle = boxes.center @ direction
+    reach = (boxes.half * np.abs(boxes.axes @ direction)).sum(-1)
+    return float((middle - reach).min()), float((middle + reach).max())
+
+
+def _pair(site: Site) -> tuple[str, str]:
+    assert site.far is not None
+    return site.anchor, site.far

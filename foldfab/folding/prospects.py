@@ -1,0 +1,170 @@
+"""Which folding options each patch of a unit has in its surroundings (sections 5.3 to 5.6).
+
+The lanes of the unit are held against what stands around it, and the pieces that meet anything are pruned (section 5.5,
+inner loop). Where what a lane meets lies folded on its own bases, it is tried again standing on plinths of that height:
+the horizontal cropping of figure 15(c). Without plinths the windows that keep clear remain: the vertical cropping of
+figure 15(b). The choice decides by cost.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from foldfab.folding.outline import leaves_box
+from foldfab.folding.problem import Problem
+from foldfab.folding.repertoire import Lane, Repertoire, cuts_of, far_shift, lane, stops_early, swept
+from foldfab.folding.space import Batch, blocked, carried
+from foldfab.folding.surroundings import Surroundings
+from foldfab.geometry.arrays import Array, Bools
+
+PAD_SHARE = 0.4
+"""Plinths may take at most this share of the height between two bases; beyond it nothing flat is left."""
+RAISES = 4
+"""How often plinths are made higher because of what the raised chain meets."""
+THE_BOX = "the bounding box"
+
+Room = dict[int, Bools]
+"""By lane, which of its pieces (N_s,) meet something outside the unit."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Prospects:
+    """The lanes of a unit that are worth looking at in some surroundings."""
+
+    lanes: Mapping[str, tuple[Lane, ...]]
+    """By patch."""
+    blocked: Room
+    obstacles: Mapping[int, tuple[str, ...]]
+    """By lane, the owners of what it meets."""
+
+
+def prospects(problem: Problem, own: Repertoire, around: Surroundings, *, in_place: bool) -> Prospects:
+    """What the patches of a unit can do where it stands; only by in-place folding where asked for."""
+    plain = {p: tuple(x for x in own.plain[p] if x.drag is None or not in_place) for p in own.unit.patches}
+    every = [x for many in plain.values() for x in many]
+    room, met = _held_against(problem, own, around, every)
+    for x in every:
+        if x.is_out or (problem.options.stay_in_box and _leaves_box(problem, own, around, x)):
+            room[x.number] = np.ones_like(room[x.number])
+            met[x.number] = {*met[x.number], -1}
+    lanes = {}
+    for patch, many in plain.items():
+        raised = [r for x in many if room[x.number].any() for r in _raised(problem, own, around, x, room, met)]
+        lanes[patch] = (*many, *raised)
+    owners = {n: tuple(sorted({_owner(around, i) for i in found})) for n, found in met.items()}
+    return Prospects(lanes, room, owners)
+
+
+def _owner(around: Surroundings, box: int) -> str:
+    return THE_BOX if box < 0 else around.solids[int(around.owner[box])].owner
+
+
+def _held_against(
+    problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane]
+) -> tuple[Room, dict[int, set[int]]]:
+    """Which pieces of the lanes meet what is around them, and which of its boxes."""
+    steps = problem.options.shrink_steps
+    room: Room = {x.number: np.zeros(steps, dtype=bool) for x in many}
+    met: dict[int, set[int]] = {x.number: set() for x in many}
+    if not many or not len(around.boxes):
+        return room, met
+    cuts, own_plates = cuts_of(own), _own_plates(problem, own, around)
+    for group in _alike(own, many):
+        for section in range(own.nominal.sections):
+            a = swept(problem, own, group, section)
+            if a is None:
+                continue
+            pieces, lanes, boxes = blocked(a, cuts, _carried(own, around, group[0], section), own_plates)
+            for number, box in zip(lanes.tolist(), boxes.tolist(), strict=True):
+                met[number].add(box)
+            for x in group:
+                room[x.number] |= pieces[x.number]
+    return room, met
+
+
+def _alike(own: Repertoire, many: list[Lane]) -> list[list[Lane]]:
+    """Lanes with which the unit's bases move in the same way."""
+    groups: dict[object, list[Lane]] = {}
+    for x in many:
+        key: object = np.round(x.drag, 6).tobytes() if x.drag is not None else ""
+        if stops_early(own, x):
+            key = (x.chain.far, round(float(x.way[2]), 6))
+        groups.setdefault(key, []).append(x)
+    return list(groups.values())
+
+
+def _carried(own: Repertoire, around: Surroundings, lead: Lane, section: int) -> Batch:
+    """The surroundings as they move with the unit's bases while lanes like `lead` fold."""
+    shifts = np.stack([far_shift(own, lead, base, section) for base in own.unit.bases], axis=1)
+    return carried(around.boxes, shifts[:, around.group], np.arange(len(around.boxes)))
+
+
+def _own_plates(problem: Problem, own: Repertoire, around: Surroundings) -> Bools:
+    """(lanes, boxes) the plates that a lane's own hinges stand on; they are never in its way."""
+    number = problem.tree.number
+    plate = np.array([s.base if s.state == "base" else -1 for s in around.solids])[around.owner]
+    own_bases = np.array([[number[x.chain.anchor], number[x.chain.far or x.chain.anchor]] for x in own.lanes])
+    found: Bools = (own_bases[:, :, None] == plate).any(1)
+    return found
+
+
+def _raised(
+    problem: Problem, own: Repertoire, around: Surroundings, first: Lane, room: Room, met: dict[int, set[int]]
+) -> tuple[Lane, ...]:
+    """The lane on plinths as high as what it meets folded on its own bases; nothing where that does not help."""
+    current, clear = first, problem.sites[first.patch].clear
+    for _ in range(RAISES):
+        pads = _needed_pads(problem, own, around, current, met[current.number])
+        if sum(pads) > PAD_SHARE * clear:
+            return ()
+        if pads == current.variant.pads:
+            break
+        higher = lane(problem, own, first.patch, replace(current.variant, pads=pads))
+        if higher is None:
+            return ()
+        current = higher
+        if current.number not in room:
+            found, hit = _held_against(problem, own, around, [current])
+            if current.is_out or (problem.options.stay_in_box and _leaves_box(problem, own, around, current)):
+                found[current.number] = np.ones_like(found[current.number])
+            room.update(found)
+            met.update(hit)
+        if not room[current.number].any():
+            break
+    helps = current is not first and room[current.number].sum() < room[first.number].sum()
+    return (current,) if helps else ()
+
+
+def _needed_pads(
+    problem: Problem, own: Repertoire, around: Surroundings, x: Lane, met: set[int]
+) -> tuple[float, float]:
+    """Heights above the anchor's face and below the far face of the folded things that the lane meets."""
+    pads = list(x.variant.pads)
+    rises = x.chain.rise[2] > 0
+    for box in met - {-1}:
+        solid, base = around.solids[int(around.owner[box])], own.unit.bases[int(around.group[box])]
+        if solid.state == "open" or base not in (x.chain.anchor, x.chain.far):
+            continue
+        end = 0 if base == x.chain.anchor else 1
+        middle = around.boxes.center[box, 2]
+        reach = float(around.boxes.half[box] @ np.abs(around.boxes.axes[box, :, 2]))
+        face = problem.faces[base]
+        height = middle + reach - face.top if rises == (end == 0) else face.bottom - middle + reach
+        pads[end] = max(pads[end], float(height))
+    return (pads[0], pads[1])
+
+
+def _leaves_box(problem: Problem, own: Repertoire, around: Surroundings, x: Lane) -> bool:
+    root = own.unit.bases[int(around.cluster[0])]
+    for section in x.active:
+        found = swept(problem, own, (x,), section)
+        assert found is not None
+        shift = {base: far_shift(own, x, base, section) for base in own.unit.bases}
+        carried_by = around.offset - shift[root]
+        low, high = found.low.min(1), found.high.max(1)
+        if leaves_box(problem, low, high, around.bounds, shift, carried_by):
+            return True
+    return False

@@ -1,0 +1,245 @@
+"""What the patches of a unit can do: every variant of every patch, swept along the unit's nominal fold (section 5.3).
+
+A variant with its sweep is a *lane*. Lanes are made once for a unit, whatever stands around it, and so is the conflict
+graph between them; lanes on plinths are added when the surroundings ask for them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from foldfab.folding import anatomy, basic
+from foldfab.folding.basic import Variant
+from foldfab.folding.mechanism import ends, peak, reach
+from foldfab.folding.model import Chain
+from foldfab.folding.nominal import FRAMES, Nominal, nominal
+from foldfab.folding.outline import sticks_out
+from foldfab.folding.press import follow_down, play_limit
+from foldfab.folding.problem import Problem, variants
+from foldfab.folding.site import Site
+from foldfab.folding.space import Batch, joined, still
+from foldfab.folding.units import Unit
+from foldfab.geometry.arrays import Array, Bools
+from foldfab.geometry.boxes import Boxes, bounds, moved
+
+ROOM_THICKNESSES = 2.0
+"""Plinths and thicker panels may take a chain this many K out of what it sweeps without them."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Lane:
+    """A variant of a patch with its sweep along the unit's nominal fold."""
+
+    number: int
+    """Its place among the lanes of its unit."""
+    patch: str
+    variant: Variant
+    chain: Chain
+    """The whole patch folding by the variant."""
+    active: range
+    """The sections in which it folds."""
+    way: Array
+    """(3,) how far its far end comes."""
+    snap: float
+    """How far its far end rises first, mm."""
+    give: float
+    """How much of that the play in its hinges covers, mm."""
+    drag: Array | None
+    """(FRAMES, 3) how it carries its far base where that is not straight down."""
+    cuts: Array
+    """(N_s + 1,) cutting points along its hinge direction, absolute coordinates, mm."""
+    is_out: bool
+    """Whether it leaves the outline that in-place folding keeps to."""
+    low: Array
+    """(3,) lower corner of all that it sweeps and of its far base when folded."""
+    high: Array
+    """(3,) upper corner."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Repertoire:
+    """The lanes of a unit and what was found out about them; it only ever grows."""
+
+    unit: Unit
+    nominal: Nominal
+    lanes: list[Lane] = field(default_factory=list)
+    movers: list[dict[int, Boxes]] = field(default_factory=list)
+    """By lane and section, the moving boxes (FRAMES, n)."""
+    by_variant: dict[tuple[str, Variant], Lane | None] = field(default_factory=dict)
+    """Lanes by what they are; None where a variant does not fit."""
+    plain: dict[str, tuple[Lane, ...]] = field(default_factory=dict)
+    """By patch, its lanes without plinths."""
+    pieces: dict[tuple[int, int], Bools] = field(default_factory=dict)
+    """By two lanes of different patches, the first one smaller, which of their pieces meet (N_s, N_s)."""
+    compared: set[int] = field(default_factory=set)
+    """Lanes whose conflicts are known."""
+    tables: dict[object, Bools] = field(default_factory=dict)
+    """Conflict tables between the options of two patches that were made already."""
+    reach: dict[str, tuple[Array, Array]] = field(default_factory=dict)
+    """By base of the unit, lower and upper corner (3,) of all that the unit sweeps, as seen from that base."""
+
+
+def repertoire(problem: Problem, unit: Unit) -> Repertoire:
+    """What the patches of a unit can do, made once."""
+    if unit not in problem.repertoires:
+        made = Repertoire(unit, nominal(problem, unit))
+        for patch in unit.patches:
+            found = (lane(problem, made, patch, v) for v in variants(problem, unit, patch))
+            made.plain[patch] = tuple(x for x in found if x is not None)
+        made.reach.update(_reach(problem, made))
+        problem.repertoires[unit] = made
+    known: Repertoire = problem.repertoires[unit]
+    return known
+
+
+def lane(problem: Problem, own: Repertoire, patch: str, variant: Variant) -> Lane | None:
+    """The lane of a variant, or None where its panels would be too short."""
+    key = (patch, variant)
+    if key not in own.by_variant:
+        own.by_variant[key] = _made(problem, own, problem.sites[patch], variant)
+    return own.by_variant[key]
+
+
+def swept(problem: Problem, own: Repertoire, many: Iterable[Lane], section: int) -> Batch | None:
+    """The lanes that fold in a section, half the gap wider on every side, or None where there are none."""
+    parts = [(own.movers[x.number][section], x.number) for x in many if section in x.active]
+    return joined(parts, problem.thickness.gap / 2) if parts else None
+
+
+def resting(problem: Problem, own: Repertoire, many: Iterable[Lane], section: int) -> Batch | None:
+    """The lanes that stand open or lie folded in a section, carried by their anchors."""
+    parts = []
+    for x in many:
+        if section not in x.active:
+            is_open = section < x.active.start
+            at = own.movers[x.number][x.active.start if is_open else x.active.stop - 1][0 if is_open else -1]
+            was = own.nominal.down[x.chain.anchor][x.active.start if is_open else x.active.stop - 1, 0 if is_open else -1]
+            shift = upright(own.nominal.down[x.chain.anchor][section] - was)
+            parts.append((moved(still(at, FRAMES), shift[:, None]), x.number))
+    return joined(parts, problem.thickness.gap / 2) if parts else None
+
+
+def awkwardness(problem: Problem, many: tuple[Lane, ...], offset: Array) -> Array:
+    """(n,) how far lanes carry things out of the open furniture and how high their plinths are, relative to its size.
+
+    `offset` (3,) is how far the unit has been carried since the open posture.
+    """
+    least, most = problem.outline
+    low, high = np.array([x.low for x in many]).reshape(-1, 3), np.array([x.high for x in many]).reshape(-1, 3)
+    out = np.maximum(least - low - offset, 0) + np.maximum(high + offset - most, 0)
+    pads = np.array([sum(x.variant.pads) for x in many])
+    found: Array = (out.sum(1) + 2 * pads) / float(np.linalg.norm(most - least))
+    return found
+
+
+def cuts_of(own: Repertoire) -> Array:
+    """(lanes, N_s + 1) cutting points of every lane."""
+    return np.array([x.cuts for x in own.lanes])
+
+
+def _made(problem: Problem, own: Repertoire, site: Site, variant: Variant) -> Lane | None:
+    steps = problem.options.shrink_steps
+    span = basic.window_span(site, (0, steps), steps, problem.thickness)
+    chain = basic.chain(site, variant, span, problem.thickness) if span is not None else None
+    if chain is None or span is None:
+        return None
+    movers, drag = _movers(problem, own, chain)
+    if not movers:
+        return None
+    own.movers.append(movers)
+    corners = [bounds(boxes) for boxes in movers.values()]
+    low, high = np.min([c[0].min((0, 1)) for c in corners], 0), np.max([c[1].max((0, 1)) for c in corners], 0)
+    middle, width = float(site.foot @ site.along), site.patch.width
+    cuts = middle - width / 2 + width * np.arange(steps + 1) / steps
+    cuts[0], cuts[-1] = min(cuts[0], middle + span[0]), max(cuts[-1], middle + span[1])
+    found = Lane(
+        len(own.lanes), site.patch.name, variant, chain, _span(movers), ends(chain), peak(chain)[0],
+        play_limit(chain, problem.thickness.gap), drag, cuts, sticks_out(problem, chain, movers.values()),
+        *_with_far_base(problem, chain, low, high),
+    )  # fmt: skip
+    own.lanes.append(found)
+    return found
+
+
+def _span(movers: Mapping[int, Boxes]) -> range:
+    return range(min(movers), max(movers) + 1)
+
+
+def _movers(problem: Problem, own: Repertoire, chain: Chain) -> tuple[dict[int, Boxes], Array | None]:
+    """By section in which it folds, panels, knuckles and feet (FRAMES, n); and how it drags its far base."""
+    down = own.nominal.down[chain.anchor]
+    if chain.far is None:
+        progress = np.linspace(0.0, 1.0, down.size).reshape(down.shape)
+        far = None
+    elif chain.mechanism == "slanted":
+        progress = np.linspace(0.0, 1.0, down.size).reshape(down.shape)
+        end = reach(chain, progress[0])
+        far = (end - end[0]) @ np.stack([chain.across, chain.rise])
+    else:
+        progress = follow_down(chain, down - own.nominal.down[chain.far])
+        far = None
+    sections = [k for k in range(len(down)) if chain.far is None or progress[k, -1] > progress[k, 0]]
+    found: dict[int, Boxes] = {}
+    for k in range(min(sections, default=0), max(sections, default=-1) + 1):
+        lead = upright(_stopped(own.nominal, chain, k)) if far is None and chain.far is not None else far
+        found[k] = anatomy.swept_boxes(chain, problem.thickness, progress[k], upright(down[k]), lead)
+    return found, far
+
+
+def far_shift(own: Repertoire, lead: Lane, base: str, section: int) -> Array:
+    """(FRAMES, 3) how a base of the unit moves in a section while the lane folds.
+
+    A thick stack stops its far base before the nominal fold would.
+    """
+    if base != lead.chain.far:
+        return upright(own.nominal.down[base][section])
+    return lead.drag if lead.drag is not None else upright(_stopped(own.nominal, lead.chain, section))
+
+
+def stops_early(own: Repertoire, x: Lane) -> bool:
+    """Whether the lane's far base stops before the nominal fold ends."""
+    if x.chain.far is None or x.drag is not None:
+        return False
+    return bool(np.any(_stopped(own.nominal, x.chain, -1) > own.nominal.down[x.chain.far][-1] + 1e-6))
+
+
+def _stopped(nominal: Nominal, chain: Chain, section: int) -> Array:
+    assert chain.far is not None
+    found: Array = np.maximum(nominal.down[chain.far][section], nominal.down[chain.anchor][section] + ends(chain)[2])
+    return found
+
+
+def upright(height: Array) -> Array:
+    """(k, 3) translations along Z."""
+    shift = np.zeros((len(height), 3))
+    shift[:, 2] = height
+    return shift
+
+
+def _reach(problem: Problem, own: Repertoire) -> dict[str, tuple[Array, Array]]:
+    margin = ROOM_THICKNESSES * (problem.thickness.panel + problem.thickness.gap)
+    found = {b: (np.full(3, np.inf), np.full(3, -np.inf)) for b in own.unit.bases}
+    for section in range(own.nominal.sections):
+        straight = swept(problem, own, (x for x in own.lanes if x.drag is None), section)
+        groups = [(straight, None, None)] if straight else []
+        for x in own.lanes:
+            if x.drag is not None:
+                groups.append((swept(problem, own, (x,), section), x.chain.far, x.drag))
+        for many, far, drag in groups:
+            assert many is not None
+            for base in own.unit.bases:
+                shift = drag if base == far and drag is not None else upright(own.nominal.down[base][section])
+                low = (many.low.min(1) - shift).min(0) - margin
+                high = (many.high.max(1) - shift).max(0) + margin
+                found[base] = (np.minimum(found[base][0], low), np.maximum(found[base][1], high))
+    return found
+
+
+def _with_far_base(problem: Problem, chain: Chain, low: Array, high: Array) -> tuple[Array, Array]:
+    if chain.far is None:
+        return low, high
+    plate, way = bounds(anatomy.base_boxes(problem.scaffold.base(chain.far), problem.thickness)), ends(chain)
+    return np.minimum(low, plate[0].min(0) + way), np.maximum(high, plate[1].max(0) + way)

@@ -1,0 +1,203 @@
+"""What a unit sees of the furniture around it: what is near its fold, how far its bases may come down, and a key to both.
+
+Everything is in the frame in which the unit stands open; it falls into one cluster for each base of the unit, and each
+cluster only translates while the unit folds (section 5.2). Only what is near takes part: the cost of one look grows with
+the number of solids, and everything else with the number of near ones.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from foldfab.folding.problem import Problem, clear_height, held
+from foldfab.folding.repertoire import Repertoire
+from foldfab.folding.scene import Scene, Solid
+from foldfab.folding.tree import between, clusters
+from foldfab.folding.units import Unit
+from foldfab.geometry.arrays import Array, Bools, Indices
+from foldfab.geometry.boxes import Boxes, close_bounds, stacked
+
+NEARLY = 0.2
+"""What is unfolded and keeps bases apart by less than this share of K more than their stack is not in the way."""
+SAME = 4
+"""Digits of mm to which two views must agree to be the same."""
+
+Limits = Mapping[tuple[str, str], tuple[float, float, str]]
+"""By (lower, upper) base: how far the upper cluster may come down before it meets something that lies flat, before it
+meets something that is not folded yet, and the owner of the latter."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Surroundings:
+    """All that is near a unit."""
+
+    cluster: Indices
+    """(b,) by number of each base of the furniture, the place of the unit's base that it moves with."""
+    offset: Array
+    """(3,) how far the unit has been carried since the open posture, mm."""
+    solids: tuple[Solid, ...]
+    """What is near, plates of the unit's own bases included."""
+    group: Indices
+    """(n,) the cluster of each box of the solids."""
+    owner: Indices
+    """(n,) the solid of each box."""
+    boxes: Boxes
+    """(n,) where they are, in the unit's frame."""
+    limits: Limits
+    bounds: Mapping[str, tuple[Array, Array]]
+    """By base of the unit, lower and upper corner (3,) of its whole cluster; empty unless the fold must stay in the box."""
+    key: object
+    """All that the unit's fold can depend on, hashable: equal keys, equal folds."""
+
+
+def look(problem: Problem, scene: Scene, own: Repertoire) -> Surroundings:
+    """What a unit sees in a scene."""
+    unit = own.unit
+    cluster = clusters(problem.tree, unit)
+    number = [problem.tree.number[b] for b in unit.bases]
+    offset = scene.offset[number[0]]
+    shift = scene.offset[scene.base] - offset
+    group, is_other = cluster[scene.base], scene.base >= 0
+    is_other[[i for p in unit.patches for i in scene.places[p]]] = False
+    low, high = scene.low + shift, scene.high + shift
+    near = _near(own, low, high, group, is_other)
+    pairs = _across(problem, unit, low, high, group, is_other)
+    near[[i for _, _, p, q in pairs for i in (*p, *q)]] = True
+    near[_brushed(own, low, high, group, is_other)] = True
+    picked = np.nonzero(near)[0]
+    solids = tuple(scene.solids[i] for i in picked)
+    owner = np.repeat(np.arange(len(solids)), [len(s.boxes) for s in solids])
+    boxes = stacked([s.boxes for s in solids])
+    boxes = Boxes(boxes.center + shift[picked][owner], boxes.axes, boxes.half)
+    limits = _limits(problem, scene, unit, pairs, shift, group)
+    whole = _bounds_by_cluster(unit, low, high, group, is_other) if problem.options.stay_in_box else {}
+    key = _key(problem, scene, unit, limits, solids, np.concatenate([low[picked], high[picked]]), offset)
+    return Surroundings(cluster, offset, solids, group[picked][owner], owner, boxes, limits, whole, key)
+
+
+def depends_on(problem: Problem, unit: Unit, around: Surroundings) -> set[str]:
+    """Names of the units that a look from this one shows: those that are near, and those that carry what is near."""
+    tree, found = problem.tree, set[str]()
+    for base in {s.base for s in around.solids}:
+        lead = tree.number[unit.bases[int(around.cluster[base])]]
+        found |= {u.name for u in between(tree, base, lead)}
+    owners = {s.owner for s in around.solids if s.state != "base"} | {owner for _, _, owner in around.limits.values()}
+    return found | {problem.unit_of[p].name for p in owners if p in problem.unit_of}
+
+
+def held_up(problem: Problem, unit: Unit, limits: Limits) -> str:
+    """The owner of what stands unfolded between two bases that a chain of the unit would bring together."""
+    for site in held(problem, unit):
+        assert site.far is not None
+        pair = (site.anchor, site.far)
+        least = problem.thickness.stack(2, has_upper_base=True)
+        if limits[pair][1] < clear_height(problem, *pair) - least - NEARLY * problem.thickness.panel:
+            return limits[pair][2]
+    return ""
+
+
+def _near(own: Repertoire, low: Array, high: Array, group: Indices, is_other: Bools) -> Bools:
+    """(n,) which solids are near anything that the unit may sweep."""
+    least = np.array([own.reach[b][0] for b in own.unit.bases])[group]
+    most = np.array([own.reach[b][1] for b in own.unit.bases])[group]
+    found: Bools = is_other & (low <= most).all(1) & (high >= least).all(1)
+    return found
+
+
+def _across(
+    problem: Problem, unit: Unit, low: Array, high: Array, group: Indices, is_other: Bools
+) -> list[tuple[int, int, Indices, Indices]]:
+    """For each two clusters (lower, upper), solids of the one below solids of the other that may come down on them."""
+    found = []
+    for i, j in itertools.combinations(range(len(unit.bases)), 2):
+        clear = clear_height(problem, unit.bases[i], unit.bases[j])
+        a, b = np.nonzero(is_other & (group == i))[0], np.nonzero(is_other & (group == j))[0]
+        if not len(a) or not len(b):
+            continue
+        a, b = _facing(low, high, a, b, clear), b
+        b = _facing(low - [0, 0, clear], high, b, a, 0.0) if len(a) else b[:0]
+        if not len(a) or not len(b):
+            continue
+        p, q = close_bounds(low[a], high[a] + [0, 0, clear], low[b], high[b])
+        inside = (low[a[p], :2] < high[b[q], :2]).all(-1) & (low[b[q], :2] < high[a[p], :2]).all(-1)
+        inside &= low[b[q], 2] - high[a[p], 2] > -1e-6
+        found.append((i, j, a[p[inside]], b[q[inside]]))
+    return found
+
+
+def _brushed(own: Repertoire, low: Array, high: Array, group: Indices, is_other: Bools) -> Indices:
+    """Solids that may meet because the unit drags its upper cluster sideways."""
+    drags = [x.drag for x in own.lanes if x.drag is not None]
+    a, b = np.nonzero(is_other & (group == 0))[0], np.nonzero(is_other & (group == 1))[0]
+    if not drags or not len(a) or not len(b):
+        return a[:0]
+    least, most = np.min([d.min(0) for d in drags], 0), np.max([d.max(0) for d in drags], 0)
+    p, q = close_bounds(low[a], high[a], low[b] + least, high[b] + most)
+    return np.unique(np.concatenate([a[p], b[q]]))
+
+
+def _facing(low: Array, high: Array, many: Indices, others: Indices, rise: float) -> Indices:
+    """Those of `many` whose bounds, `rise` higher, reach into the bounds of all others together."""
+    least, most = low[others].min(0), high[others].max(0)
+    reach = (low[many] <= most).all(1) & (high[many] + [0, 0, rise] >= least).all(1)
+    return many[reach]
+
+
+def _limits(
+    problem: Problem, scene: Scene, unit: Unit, pairs: list[tuple[int, int, Indices, Indices]], shift: Array,
+    group: Indices,
+) -> Limits:  # fmt: skip
+    """How far each upper cluster of the unit may come down towards each lower one."""
+    gap = problem.thickness.gap
+    found = {(a, b): (np.inf, np.inf, "") for a, b in itertools.combinations(unit.bases, 2)}
+    for i, j, p, q in pairs:
+        flat, raised, owner = np.inf, np.inf, ""
+        for a, b in zip(p, q, strict=True):
+            lower, upper = scene.solids[a], scene.solids[b]
+            room = _room(lower, shift[a], upper, shift[b]) - gap
+            standing = [s for s in (lower, upper) if s.state == "open"]
+            if not standing:
+                flat = min(flat, room)
+            elif room < raised:
+                raised, owner = room, standing[0].owner
+        found[unit.bases[i], unit.bases[j]] = (float(flat), float(raised), owner)
+    return found
+
+
+def _room(lower: Solid, shift_a: Array, upper: Solid, shift_b: Array) -> float:
+    """How far the upper solid may come down on the lower one, mm; infinite where they pass each other."""
+    if len(lower.boxes) == 1 and len(upper.boxes) == 1:
+        return float(upper.low[2] + shift_b[2] - lower.high[2] - shift_a[2])
+    low_a, high_a = lower.corners
+    low_b, high_b = upper.corners
+    low_a, high_a, low_b, high_b = low_a + shift_a, high_a + shift_a, low_b + shift_b, high_b + shift_b
+    over = (low_a[:, None, :2] < high_b[None, :, :2]).all(-1) & (low_b[None, :, :2] < high_a[:, None, :2]).all(-1)
+    room = low_b[None, :, 2] - high_a[:, None, 2]
+    return float(np.where(over & (room > -1e-6), room, np.inf).min())
+
+
+def _bounds_by_cluster(
+    unit: Unit, low: Array, high: Array, group: Indices, is_other: Bools
+) -> dict[str, tuple[Array, Array]]:
+    found = {}
+    for i, base in enumerate(unit.bases):
+        own = is_other & (group == i)
+        found[base] = (low[own].min(0), high[own].max(0))
+    return found
+
+
+def _key(
+    problem: Problem, scene: Scene, unit: Unit, limits: Limits, solids: tuple[Solid, ...], corners: Array, offset: Array
+) -> object:
+    """Everything that the unit's fold can depend on."""
+    numbers = []
+    for pair, (flat, up, owner) in limits.items():
+        clear = clear_height(problem, *pair)
+        numbers.append((round(min(flat, clear), SAME), (round(up, SAME), owner) if up < clear else None))
+    place = tuple(np.round(offset, SAME)) if problem.options.stay_in_box else None
+    shapes = tuple((s.owner, s.state, len(s.boxes)) for s in solids)
+    return unit, shapes, (np.round(corners, SAME) + 0.0).tobytes(), tuple(numbers), scene.gone, place

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from foldfab.geometry.arrays import Array
 from foldfab.geometry.boxes import Boxes, close_pairs, grown
 from foldfab.scaffold import segments, sheets
 from foldfab.scaffold.groups import Groups

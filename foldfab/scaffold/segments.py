@@ -131,7 +131,8 @@ def _are_perpendicular(axes: Array, half: Array) -> Bools:
     is_rod = (long > ROD_RATIO * middle) & (middle < ROD_RATIO * thin)
     level_rod = np.abs(axes[every, order[:, 2], 2]) < np.sin(ROD_TILT)
     level_plate = np.abs(axes[every, order[:, 0], 2]) > np.cos(PLATE_TILT)
-    return np.where(is_rod, level_rod, level_plate)
+    level: Bools = np.where(is_rod, level_rod, level_plate)
+    return level
 
 
 def _is_rod(half: Array) -> bool:

@@ -118,7 +118,7 @@ def _merged(rest: list[Sheet], distance: float) -> list[Sheet]:
 
 
 def _alike(a: Boxes, b: Boxes, distance: float) -> list[tuple[int, int]]:
-    """All pairs of sheets, as `as_boxes` gives them, that may be one, and few others: those that are parallel and close.
+    """All pairs of sheets, as `as_boxes` gives them, that may be one, and few others: what is parallel and close.
 
     Seen in the plane of `a`, `b` may be turned: the tight rectangle around it lies in a square around its circle.
     """

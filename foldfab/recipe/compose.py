@@ -1,6 +1,6 @@
 """Composites: furniture arranged in grids of columns × rows, for measuring how the solver scales (section 6, Table 1).
 
-    bench     rows of benches end to end, side by side; neighbours in a row share a frame, the rows one end frame
+    bench     rows of benches end to end, side by side; neighbours in a row share a frame, and rows one base
     building  storeys with a table in each room
     hexagon   a honeycomb of shelves with upright dividers
     shelf     bays of five storeys that share their boards

@@ -143,6 +143,16 @@ def _recipes(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def _compose(arguments: argparse.Namespace) -> int:
+    from foldfab import pipeline
+
+    recipe = pipeline.compose(arguments.kind, arguments.grid)
+    file = Path(arguments.output or f"{recipe.name}.json")
+    pipeline.save(recipe, file)
+    print(f"{file}: {len(recipe.parts)} parts")
+    return 0
+
+
 def _load(arguments: argparse.Namespace, progress: _Progress) -> Recipe:
     progress("reading")
     from foldfab import pipeline
@@ -189,6 +199,12 @@ def _parser() -> argparse.ArgumentParser:
     checking.add_argument("folder", metavar="FOLDER", help="a folder that `foldfab print` wrote")
     checking.add_argument("--json", action="store_true", help="print the facts as JSON")
     _command(commands, "recipes", _recipes, "list the recipes that foldfab ships")
+    composing = _command(
+        commands, "compose", _compose, "arrange furniture in a grid, as a recipe to measure foldfab by"
+    )
+    composing.add_argument("kind", metavar="KIND", help="bench, building, hexagon or shelf")
+    composing.add_argument("grid", metavar="GRID", help="columns x rows, such as 4x4; at most 32x32")
+    composing.add_argument("-o", "--output", metavar="FILE", help="where the recipe goes (KIND-GRID.json, here)")
     return parser
 
 

@@ -49,6 +49,24 @@ def load(text: str, **overrides: Any) -> Recipe:
     return override(recipe, **overrides) if overrides else recipe
 
 
+def compose(kind: str, grid: str) -> Recipe:
+    """Furniture of a kind arranged in a grid such as `4x4`, for measuring how the solver scales (section 6, Table 1).
+
+    Raises:
+        RecipeError: there is no such kind or grid.
+    """
+    from foldfab.recipe import compose as composites
+
+    return composites.compose(kind, *composites.grid(grid))
+
+
+def save(recipe: Recipe, file: Path | str) -> None:
+    """Writes a recipe as JSON, one part a line."""
+    from foldfab.recipe.write import as_text
+
+    Path(file).write_text(as_text(recipe), encoding="utf-8")
+
+
 def prepare() -> None:
     """Imports what solving needs, so that a time measured after it is the solver's own."""
     import foldfab.folding.solve

@@ -29,7 +29,7 @@ class Pipeline(types.ModuleType):
         self.fails: dict[str, BaseException] = {}
         self.findings: tuple[Finding, ...] = ()
         self.rows: tuple[Any, ...] = ()
-        for name in ("load", "foldabilize", "fabricate", "write", "check", "shipped"):
+        for name in ("load", "foldabilize", "fabricate", "write", "check", "shipped", "compose", "save"):
             setattr(self, name, self._verb(name))
         self.prepare = lambda: None
 
@@ -48,6 +48,7 @@ class Pipeline(types.ModuleType):
             "fabricate": types.SimpleNamespace(findings=self.findings),
             "check": types.SimpleNamespace(rows=self.rows, ok=all(row.ok for row in self.rows)),
             "shipped": (Path("bench.json"),),
+            "compose": types.SimpleNamespace(name="bench-4x4", parts=("seat", "back")),
         }.get(name)
 
     def names(self) -> list[str]:
@@ -112,6 +113,22 @@ def test_fold(pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["fold", "bench"]) == 0
     assert cli.main(["fold", "bench", "--json"]) == 0
     assert capsys.readouterr().out == 'table\n{\n "status": "folded"\n}\n'
+
+
+def test_compose(pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["compose", "bench", "4x4"]) == 0
+    assert cli.main(["compose", "bench", "4x4", "-o", "many.json"]) == 0
+    assert [call[1] for call in pipeline.calls if call[0] == "compose"] == [("bench", "4x4")] * 2
+    assert [call[1][1] for call in pipeline.calls if call[0] == "save"] == [Path("bench-4x4.json"), Path("many.json")]
+    assert capsys.readouterr() == ("bench-4x4.json: 2 parts\nmany.json: 2 parts\n", "")
+
+
+def test_what_cannot_be_composed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["compose", "chair", "0x3"]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert "kind: should be one of bench, building, hexagon, shelf" in err
+    assert "grid: should have 1 to 32 columns" in err
 
 
 def test_refused(pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import foldfab
-from foldfab import cli
+from foldfab import cli, pipeline
 from foldfab.errors import AbstractionError, FabricationError, FoldingError
 from foldfab.fabrication.inspect import printed_extent
 from foldfab.fabrication.model import Assembly
@@ -34,6 +34,13 @@ def test_fit_uses_the_bed(tmp_path: Path, posture: str, printer: Any) -> None:
     shares = [(way / bed).max() for way in (size, size[[1, 0, 2]]) if (way <= bed).all()]
     assert shares, f"{size} does not fit {bed}"
     assert max(shares) >= 0.9, f"{size} leaves most of {bed} empty"
+
+
+def test_a_composite_is_saved_loaded_and_folded(tmp_path: Path) -> None:
+    pipeline.save(pipeline.compose("building", "2x1"), tmp_path / "many.json")
+    solution = foldfab.foldabilize(foldfab.load(str(tmp_path / "many.json")))
+    assert solution.scaffold.recipe.name == "building-2x1"
+    assert len(solution.chains) == 9 and len(solution.steps) == 3
 
 
 def test_a_scale_of_ones_own_is_kept(tmp_path: Path) -> None:

@@ -14,6 +14,7 @@ from foldfab.folding.anatomy import Face, faces
 from foldfab.folding.model import Thickness
 from foldfab.geometry.arrays import Array
 from foldfab.geometry.boxes import Boxes, close_pairs, grown
+from foldfab.geometry.rotation import cross
 from foldfab.scaffold.model import BasePatch, Patch, Scaffold
 
 EDGE_THICKNESSES = 2.0
@@ -54,8 +55,8 @@ class Site:
 def sites(scaffold: Scaffold, thickness: Thickness) -> tuple[Site, ...]:
     """The sites of all foldable patches, in their order, trimmed so that no two touch."""
     total = sum(patch.area for patch in scaffold.patches)
-    plates = {base.name: faces(base, thickness) for base in scaffold.bases}
-    made = [_site(scaffold, patch, patch.area / total, plates, thickness) for patch in scaffold.patches]
+    plates = {base.name: _Plate(base, thickness) for base in scaffold.bases}
+    made = [_site(patch, patch.area / total, plates, thickness) for patch in scaffold.patches]
     return tuple(_apart(made, thickness))
 
 
@@ -66,46 +67,55 @@ def slab(site: Site, thickness: Thickness) -> Boxes:
     gap = thickness.gap
     reach = (length - gap * (1 if site.far is None else 2)) / 2
     center = site.foot + direction * (gap + reach) + site.along * float(site.span.mean())
-    normal = np.cross(site.along, direction)
+    normal = cross(site.along, direction)
     half = np.array([[thickness.panel / 2, float(np.ptp(site.span)) / 2, max(reach, 0.0)]])
     return Boxes(center[None], np.stack([normal, site.along, direction])[None], half)
 
 
-def _site(scaffold: Scaffold, patch: Patch, importance: float, plates: dict[str, Face], thickness: Thickness) -> Site:
+def _site(patch: Patch, importance: float, plates: dict[str, _Plate], thickness: Thickness) -> Site:
     hangs = patch.lower is None
     anchor, far = (patch.upper, None) if hangs else (patch.lower, patch.upper)
     assert anchor is not None
     rise = np.array([0.0, 0.0, -1.0 if hangs else 1.0])
     along = -patch.along if hangs else patch.along
-    across = np.cross(along, rise)
+    across = cross(along, rise)
     up = -patch.up if hangs else patch.up
-    start = plates[anchor].bottom if hangs else plates[anchor].top
+    start = plates[anchor].face.bottom if hangs else plates[anchor].face.top
     foot = patch.center + patch.up * (start - patch.center[2]) / patch.up[2]
     tip = patch.center[2] + abs(patch.up[2]) * patch.length / 2 * rise[2]
-    clear = plates[far].bottom - start if far is not None else abs(tip - start)
+    clear = plates[far].face.bottom - start if far is not None else abs(tip - start)
     lean = float(np.arctan2(up @ across, up @ rise))
     half = patch.width / 2
-    covered = tuple(_covered(scaffold.base(b), foot, along, thickness) if b else (-half, half) for b in (anchor, far))
+    covered = tuple(_covered(plates[b], foot, along, thickness) if b else (-half, half) for b in (anchor, far))
     return Site(
         patch, importance, anchor, far, across, along, rise, lean, foot, float(clear),
         np.array([-half, half]), (covered[0], covered[1]),
     )  # fmt: skip
 
 
-def _covered(base: BasePatch, foot: Array, along: Array, thickness: Thickness) -> tuple[float, float]:
+class _Plate:
+    """A base's faces, and its outlines in bulk."""
+
+    def __init__(self, base: BasePatch, thickness: Thickness) -> None:
+        self.face: Face = faces(base, thickness)
+        along = np.array([outline.along for outline in base.outlines])
+        half = np.array([outline.half for outline in base.outlines])
+        self.center = np.array([outline.center for outline in base.outlines])
+        """(n, 2) mm."""
+        across = np.stack([-along[:, 1], along[:, 0]], axis=1)
+        self.sides = np.stack([along * half[:, :1], across * half[:, 1:]], axis=1)
+        """(n, 2, 2) half sides as vectors, mm."""
+
+
+def _covered(plate: _Plate, foot: Array, along: Array, thickness: Thickness) -> tuple[float, float]:
     """What the base covers of the horizontal line through `foot`, as one interval; everything where it covers none."""
     across = np.array([-along[1], along[0]])
-    low, high = np.inf, -np.inf
-    for outline in base.outlines:
-        sides = np.stack(
-            [outline.along * outline.half[0], np.array([-outline.along[1], outline.along[0]]) * outline.half[1]]
-        )
-        offset = outline.center - foot[:2]
-        if abs(offset @ across) <= np.abs(sides @ across).sum() + 1.5 * thickness.panel:
-            reach = float(np.abs(sides @ along[:2]).sum())
-            middle = float(offset @ along[:2])
-            low, high = min(low, middle - reach), max(high, middle + reach)
-    return (float(low), float(high)) if low < high else (-np.inf, np.inf)
+    offset = (plate.center - foot[:2])[:, None]
+    hit = np.abs(offset @ across)[:, 0] <= np.abs(plate.sides @ across).sum(1) + 1.5 * thickness.panel
+    reach = np.abs(plate.sides @ along[:2]).sum(1)[hit]
+    middle = (offset @ along[:2])[hit, 0]
+    low, high = float((middle - reach).min(initial=np.inf)), float((middle + reach).max(initial=-np.inf))
+    return (low, high) if low < high else (-np.inf, np.inf)
 
 
 def _apart(made: list[Site], thickness: Thickness) -> list[Site]:

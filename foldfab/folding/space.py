@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from foldfab.geometry.arrays import Array, Bools, Indices
-from foldfab.geometry.boxes import Boxes, bounds, close_bounds, overlaps
+from foldfab.geometry.boxes import Boxes, bounds, near_pairs, overlaps
 
 PARALLEL = 1.0 - 1e-9
 """Cosine above which two hinge directions are the same line."""
@@ -86,7 +86,7 @@ def meetings(a: Batch, b: Batch, excluded: Bools | None = None) -> Iterator[tupl
     """
     if not len(a) or not len(b):
         return
-    i, j = close_bounds(a.least, a.most, b.least, b.most)
+    i, j = near_pairs((a.least, a.most), (b.least, b.most))
     if excluded is not None:
         keep = ~excluded[a.lane[i], b.lane[j]]
         i, j = i[keep], j[keep]

@@ -19,7 +19,7 @@ from foldfab.folding.scene import Scene, Solid
 from foldfab.folding.tree import between, clusters
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Array, Bools, Indices
-from foldfab.geometry.boxes import Boxes, close_bounds, stacked
+from foldfab.geometry.boxes import Boxes, near_pairs, stacked
 
 NEARLY = 0.2
 """What is unfolded and keeps bases apart by less than this share of K more than their stack is not in the way."""
@@ -122,7 +122,7 @@ def _across(
         b = _facing(low - [0, 0, clear], high, b, a, 0.0) if len(a) else b[:0]
         if not len(a) or not len(b):
             continue
-        p, q = close_bounds(low[a], high[a] + [0, 0, clear], low[b], high[b])
+        p, q = near_pairs((low[a], high[a] + [0, 0, clear]), (low[b], high[b]))
         inside = (low[a[p], :2] < high[b[q], :2]).all(-1) & (low[b[q], :2] < high[a[p], :2]).all(-1)
         inside &= low[b[q], 2] - high[a[p], 2] > -1e-6
         found.append((i, j, a[p[inside]], b[q[inside]]))
@@ -136,7 +136,7 @@ def _brushed(own: Repertoire, low: Array, high: Array, group: Indices, is_other:
     if not drags or not len(a) or not len(b):
         return a[:0]
     least, most = np.min([d.min(0) for d in drags], 0), np.max([d.max(0) for d in drags], 0)
-    p, q = close_bounds(low[a], high[a], low[b] + least, high[b] + most)
+    p, q = near_pairs((low[a], high[a]), (low[b] + least, high[b] + most))
     return np.unique(np.concatenate([a[p], b[q]]))
 
 

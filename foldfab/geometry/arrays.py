@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -14,6 +16,9 @@ Bools = NDArray[np.bool_]
 Indices = NDArray[np.int64]
 """Any integer array; docstrings give its shape."""
 
+FEW = 16
+"""Up to this many numbers are looked at one by one."""
+
 
 def frozen(values: ArrayLike, *shape: int) -> Array:
     """A read-only float copy of `values`, checked to be finite and of `shape` (-1 matches any length).
@@ -22,9 +27,10 @@ def frozen(values: ArrayLike, *shape: int) -> Array:
         ValueError: the shape differs or a value is not finite.
     """
     array = np.array(values, dtype=np.float64)
-    if array.ndim != len(shape) or any(n not in (-1, m) for n, m in zip(shape, array.shape, strict=True)):
-        raise ValueError(f"expected shape {shape}, got {array.shape}")
-    if not np.isfinite(array).all():
+    _require_shape(array, shape)
+    # A few numbers, as most arrays here hold, are judged faster one by one.
+    is_finite = all(map(math.isfinite, array.ravel().tolist())) if array.size <= FEW else np.isfinite(array).all()
+    if not is_finite:
         raise ValueError("array holds NaN or infinity")
     array.setflags(write=False)
     return array
@@ -33,7 +39,13 @@ def frozen(values: ArrayLike, *shape: int) -> Array:
 def frozen_indices(values: ArrayLike, *shape: int) -> Indices:
     """A read-only integer copy of `values`, checked to be of `shape` (-1 matches any length)."""
     array = np.array(values, dtype=np.int64)
-    if array.ndim != len(shape) or any(n not in (-1, m) for n, m in zip(shape, array.shape, strict=True)):
-        raise ValueError(f"expected shape {shape}, got {array.shape}")
+    _require_shape(array, shape)
     array.setflags(write=False)
     return array
+
+
+def _require_shape(array: Array | Indices, shape: tuple[int, ...]) -> None:
+    if array.shape == shape:
+        return
+    if array.ndim != len(shape) or any(n not in (-1, m) for n, m in zip(shape, array.shape, strict=True)):
+        raise ValueError(f"expected shape {shape}, got {array.shape}")

@@ -26,7 +26,8 @@ from foldfab.recipe.model import FoldOptions, Posture, PrintOptions
 from foldfab.recipe.names import folder_name_problem, has_control_characters, part_name_problem
 from foldfab.recipe.printers import DEFAULT_PRINTER, LARGEST, PRINTERS, SMALLEST
 
-MOST_PARTS = 2000
+MOST_PARTS = 20_000
+"""Enough for composites of 32 × 32 cells."""
 FARTHEST = 1e6
 """mm; larger sizes and coordinates are a wrong unit."""
 SMALLEST_SIZE = 0.01

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 from foldfab.geometry.arrays import Array
@@ -25,6 +26,25 @@ def to_json(recipe: Recipe) -> dict[str, Any]:
         },
         "print": _print(recipe.print),
     }
+
+
+def as_text(recipe: Recipe) -> str:
+    """A recipe file as one would write it by hand, one part a line; reading it gives the same recipe."""
+    data = to_json(recipe)
+    parts = ",\n".join(f"    {_line(_brief(part))}" for part in data["parts"])
+    rest = {key: f"[\n{parts}\n  ]" if key == "parts" else _line(value) for key, value in data.items()}
+    return "{\n" + ",\n".join(f"  {_line(key)}: {text}" for key, text in rest.items()) + "\n}\n"
+
+
+def _brief(part: dict[str, Any]) -> dict[str, Any]:
+    """The part without what is so by default."""
+    is_level = part["box"]["axes"] == [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+    box = {key: value for key, value in part["box"].items() if key != "axes" or not is_level}
+    return {"name": part["name"], "box": box, **({} if part["hingeable"] else {"hingeable": False})}
+
+
+def _line(value: object) -> str:
+    return json.dumps(value, ensure_ascii=False, allow_nan=False)
 
 
 def _part(part: Part) -> dict[str, Any]:

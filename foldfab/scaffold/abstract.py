@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import networkx as nx
 import numpy as np
 
 from foldfab.errors import AbstractionError
@@ -12,6 +11,7 @@ from foldfab.geometry.rotation import upright
 from foldfab.recipe.model import Recipe
 from foldfab.scaffold import segments as seg
 from foldfab.scaffold.bases import Layout, find_bases
+from foldfab.scaffold.groups import Groups
 from foldfab.scaffold.model import BasePatch, Patch, Scaffold
 from foldfab.scaffold.segments import Segment
 from foldfab.scaffold.sheets import sheets
@@ -35,11 +35,12 @@ def abstract(recipe: Recipe, direction: Array, scale: float) -> Scaffold:
     """
     parts = seg.segments(recipe, direction, scale)
     thickness, gap = recipe.print.thickness, recipe.print.clearance
-    tolerance = TOUCH_SHARE * float(np.median([2 * s.half.max() for s in parts]))
+    tolerance = TOUCH_SHARE * float(np.median(2 * np.array([s.half for s in parts]).max(1)))
     _require_connected(parts, tolerance)
     stub = STUB_THICKNESSES * thickness
     layout, patches, notes = _laid_out(parts, tolerance, stub, thickness + gap)
-    level = [s.name for s in parts if s.name in _loose(parts, layout, patches) and seg.is_level(s)]
+    loose = set(_loose(parts, layout, patches))
+    level = {s.name for s in parts if s.name in loose and seg.is_level(s)}
     if level:
         # A rail that touches no base can be one: it lies level, and what it touches folds.
         parts = tuple(seg.as_base(s) if s.name in level else s for s in parts)
@@ -58,12 +59,10 @@ def abstract(recipe: Recipe, direction: Array, scale: float) -> Scaffold:
 
 def _require_connected(parts: tuple[Segment, ...], tolerance: float) -> None:
     solids = grown(seg.as_boxes(parts), tolerance / 2)
-    graph: nx.Graph[int] = nx.Graph()
-    graph.add_nodes_from(range(len(parts)))
-    graph.add_edges_from((int(i), int(j)) for i, j in zip(*close_pairs(solids, solids), strict=True))
-    groups = sorted(nx.connected_components(graph), key=lambda g: (-len(g), min(g)))
+    i, j = close_pairs(solids, solids)
+    groups = sorted(Groups(len(parts), zip(i.tolist(), j.tolist(), strict=True)).all(), key=lambda g: (-len(g), min(g)))
     if len(groups) > 1:
-        names = tuple(parts[i].name for i in sorted(groups[1]))
+        names = tuple(parts[i].name for i in groups[1])
         raise AbstractionError(
             f"{_listed(names)} do{'es' if len(names) == 1 else ''} not touch the rest (no part is within "
             f"{tolerance / 2:.2g} mm at print scale); move the parts together",
@@ -83,8 +82,8 @@ def _tilted(parts: tuple[Segment, ...], thickness: float) -> list[str]:
     """What is printed level although it is not."""
     notes = []
     for part in parts:
-        rise = seg.slope(part)
-        if part.is_base and rise > STEEP_THICKNESSES * thickness:
+        rise = seg.slope(part) if part.is_base else 0.0
+        if rise > STEEP_THICKNESSES * thickness:
             notes.append(f"{part.name} slopes by {rise:.1f} mm at print scale and is printed level")
     return notes
 
@@ -102,12 +101,12 @@ def _require_attached(loose: tuple[str, ...]) -> None:
 
 
 def _require_one_piece(patches: tuple[Patch, ...], bases: tuple[BasePatch, ...]) -> None:
-    graph: nx.Graph[str] = nx.Graph()
-    graph.add_nodes_from(base.name for base in bases)
-    graph.add_edges_from(patch.bases for patch in patches if len(patch.bases) == 2)
-    groups = sorted(nx.connected_components(graph), key=lambda g: (-len(g), min(g)))
+    number = {base.name: n for n, base in enumerate(bases)}
+    joints = [(number[p.lower], number[p.upper]) for p in patches if p.lower is not None and p.upper is not None]
+    named = [sorted(bases[n].name for n in group) for group in Groups(len(bases), joints).all()]
+    groups = sorted(named, key=lambda g: (-len(g), g))
     if len(groups) > 1:
-        names = tuple(sorted(groups[1]))
+        names = tuple(groups[1])
         raise AbstractionError(f"the base of {_listed(names)} is held by nothing that folds", names)
 
 

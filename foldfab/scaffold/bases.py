@@ -10,12 +10,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import networkx as nx
 import numpy as np
 
-from foldfab.geometry.arrays import Array
 from foldfab.geometry.boxes import Boxes, close_pairs, grown
 from foldfab.scaffold import segments, sheets
+from foldfab.scaffold.groups import Groups
 from foldfab.scaffold.model import BasePatch, Outline
 from foldfab.scaffold.segments import Segment
 from foldfab.scaffold.sheets import Sheet
@@ -58,35 +57,45 @@ def find_bases(parts: tuple[Segment, ...], leaves: tuple[Sheet, ...], tolerance:
         tolerance: parts closer than this touch, mm.
         stub: shorter pieces of a sheet than this cannot fold and are trimmed, mm.
     """
-    graph: nx.Graph[object] = nx.Graph()
-    graph.add_nodes_from(range(len(parts)))
-    solids = grown(segments.as_boxes(parts), tolerance / 2) if parts else None
-    if solids is not None:
-        graph.add_edges_from((int(i), int(j)) for i, j in zip(*close_pairs(solids, solids), strict=True) if i < j)
-    lines = _lines(graph, parts, leaves, solids, tolerance, stub)
-    _link_ends(graph, leaves, lines, tolerance)
-    return _layout(graph, parts, leaves)
+    touching: list[list[int]] = [[] for _ in leaves]
+    joints: list[tuple[int, int]] = []
+    if parts:
+        solids = grown(segments.as_boxes(parts), tolerance / 2)
+        joints = _pairs(solids, solids)
+        for i, j in _pairs(grown(sheets.as_boxes(leaves), tolerance / 2), solids):
+            touching[i].append(j)
+    lines, touched = _lines(parts, leaves, touching, tolerance, stub)
+    # Numbers of parts come first, those of lines after them.
+    whole = Groups(len(parts) + len(lines), joints)
+    for k, members in enumerate(touched, len(parts)):
+        for j in members:
+            whole.join(k, j)
+    for k, other in _meeting_ends(leaves, lines, tolerance):
+        whole.join(len(parts) + k, len(parts) + other)
+    is_needed = _connecting(Groups(len(parts), joints), touched)
+    return _layout(whole, parts, leaves, lines, is_needed)
+
+
+def _pairs(a: Boxes, b: Boxes) -> list[tuple[int, int]]:
+    i, j = close_pairs(a, b)
+    return list(zip(i.tolist(), j.tolist(), strict=True))
 
 
 def _lines(
-    graph: nx.Graph[object], parts: tuple[Segment, ...], leaves: tuple[Sheet, ...], solids: Boxes | None,
-    tolerance: float, stub: float,
-) -> list[Line]:  # fmt: skip
-    touching: dict[int, list[int]] = {i: [] for i in range(len(leaves))}
-    if solids is not None and leaves:
-        hit = close_pairs(grown(sheets.as_boxes(leaves), tolerance / 2), solids)
-        for i, j in zip(*hit, strict=True):
-            touching[int(i)].append(int(j))
-    made: list[Line] = []
+    parts: tuple[Segment, ...], leaves: tuple[Sheet, ...], touching: list[list[int]], tolerance: float, stub: float
+) -> tuple[list[Line], list[list[int]]]:
+    """The lines of all sheets, and for each the parts that touch its sheet there."""
+    heights = [float(part.center[2]) for part in parts]
+    lines: list[Line] = []
+    touched: list[list[int]] = []
     for i, leaf in enumerate(leaves):
-        margin = max(stub, STUB_SHARE * (leaf.top - leaf.bottom))
-        groups = _grouped([(float(parts[j].center[2]), j) for j in touching[i]], tolerance + leaf.thickness)
-        for height, members, end in _with_ends(leaf, groups, margin):
-            line = Line(i, height, end)
-            made.append(line)
-            graph.add_node(line)
-            graph.add_edges_from((line, j) for j in members)
-    return made
+        bottom, top = leaf.bottom, leaf.top
+        margin = max(stub, STUB_SHARE * (top - bottom))
+        groups = _grouped([(heights[j], j) for j in touching[i]], tolerance + leaf.thickness)
+        for height, members, end in _with_ends(bottom, top, groups, margin):
+            lines.append(Line(i, height, end))
+            touched.append(members)
+    return lines, touched
 
 
 def _grouped(found: list[tuple[float, int]], tolerance: float) -> list[tuple[float, list[int]]]:
@@ -99,48 +108,60 @@ def _grouped(found: list[tuple[float, int]], tolerance: float) -> list[tuple[flo
     return groups
 
 
-def _with_ends(leaf: Sheet, groups: list[tuple[float, list[int]]], margin: float) -> list[tuple[float, list[int], int]]:
+def _with_ends(
+    bottom: float, top: float, groups: list[tuple[float, list[int]]], margin: float
+) -> list[tuple[float, list[int], int]]:
     """The groups of touching parts with the two ends among them; groups near an end are that end's."""
-    low = [g for g in groups if g[0] - leaf.bottom <= margin]
-    high = [g for g in groups if leaf.top - g[0] <= margin and g not in low]
+    low = [g for g in groups if g[0] - bottom <= margin]
+    high = [g for g in groups if top - g[0] <= margin and g not in low]
     inner = [g for g in groups if g not in low and g not in high]
     ends = []
-    for near, height, end in ((low, leaf.bottom, -1), (high, leaf.top, 1)):
+    for near, height, end in ((low, bottom, -1), (high, top, 1)):
         ends.append((near[0][0] if near else height, [j for g in near for j in g[1]], end))
     return [ends[0], *((height, members, 0) for height, members in inner), ends[1]]
 
 
-def _link_ends(graph: nx.Graph[object], leaves: tuple[Sheet, ...], lines: list[Line], tolerance: float) -> None:
-    """Links ends of different sheets that meet along their length.
+def _meeting_ends(leaves: tuple[Sheet, ...], lines: list[Line], tolerance: float) -> list[tuple[int, int]]:
+    """Which lines, by their numbers, are ends of different sheets that meet along their length.
 
     Ends that only meet at a corner are left apart: they would make a base out of air where two T-scaffolds fold freely.
     """
-    ends = [line for line in lines if line.end]
+    ends = [k for k, line in enumerate(lines) if line.end]
     if not ends:
-        return
-    strips = grown(_strips(leaves, ends, tolerance), tolerance / 2)
-    for i, j in zip(*close_pairs(strips, strips), strict=True):
-        a, b = ends[i].sheet, ends[j].sheet
+        return []
+    strips = grown(_strips(leaves, [lines[k] for k in ends], tolerance), tolerance / 2)
+    found = []
+    for i, j in _pairs(strips, strips):
+        a, b = lines[ends[i]].sheet, lines[ends[j]].sheet
         if a < b and abs(leaves[a].along @ leaves[b].along) > ALIGNED:
-            graph.add_edge(ends[i], ends[j])
+            found.append((ends[i], ends[j]))
+    return found
 
 
 def _strips(leaves: tuple[Sheet, ...], lines: list[Line], height: float) -> Boxes:
     """Thin horizontal boxes along the lines, as thick as the sheets."""
     made = [leaves[line.sheet] for line in lines]
-    across = np.array([np.cross([0.0, 0.0, 1.0], s.along) for s in made])
-    axes = np.stack([np.array([s.along for s in made]), across, np.tile([0.0, 0.0, 1.0], (len(made), 1))], axis=1)
+    along = np.array([s.along for s in made])
+    up = np.tile([0.0, 0.0, 1.0], (len(made), 1))
     half = np.array([[s.width / 2, s.thickness / 2, height / 2] for s in made])
-    return Boxes(np.array([s.at(line.height) for s, line in zip(made, lines, strict=True)]), axes, half)
+    center = np.array([s.at(line.height) for s, line in zip(made, lines, strict=True)])
+    return Boxes(center, np.stack([along, np.cross(up, along), up], axis=1), half)
 
 
-def _layout(graph: nx.Graph[object], parts: tuple[Segment, ...], leaves: tuple[Sheet, ...]) -> Layout:
+def _layout(
+    whole: Groups, parts: tuple[Segment, ...], leaves: tuple[Sheet, ...], lines: list[Line], is_needed: list[bool]
+) -> Layout:
     found: list[tuple[BasePatch, list[Line]]] = []
-    for component in nx.connected_components(graph):
-        members = sorted(n for n in component if isinstance(n, int))
-        lines = sorted((n for n in component if isinstance(n, Line)), key=lambda n: (n.sheet, n.height))
-        if members or len(lines) > 1:
-            found.append((_base(graph, [parts[j] for j in members], members, lines, leaves), lines))
+    outlines = _outlines(parts)
+    for component in whole.all():
+        members = [n for n in component if n < len(parts)]
+        own = [n - len(parts) for n in component if n >= len(parts)]
+        if members or len(own) > 1:
+            inside = [lines[k] for k in own]
+            needed = [lines[k] for k in own if is_needed[k]]
+            strips = [_strip_outline(leaves[line.sheet], line) for line in needed]
+            made = _base([parts[j] for j in members], [outlines[j] for j in members], inside, strips, leaves)
+            found.append((made, inside))
     floor = min((base.bottom for base, _ in found), default=0.0)
     found.sort(key=lambda f: (round(f[0].bottom - floor, 6), f[0].name, f[1]))
     taken = {part for leaf in leaves for part in leaf.parts}
@@ -158,49 +179,52 @@ def _layout(graph: nx.Graph[object], parts: tuple[Segment, ...], leaves: tuple[S
 
 
 def _base(
-    graph: nx.Graph[object], parts: list[Segment], members: list[int], lines: list[Line], leaves: tuple[Sheet, ...]
+    parts: list[Segment], outlines: list[Outline], lines: list[Line], strips: list[Outline], leaves: tuple[Sheet, ...]
 ) -> BasePatch:
-    stepped = len(parts) > 1 and float(np.ptp([part.center[2] for part in parts])) > STEP
-    outlines = [_outline(part, is_stepped=stepped) for part in parts]
-    needed = lines if not parts else _connecting(graph, members, lines)
-    outlines += [_strip_outline(leaves[line.sheet], line) for line in needed]
     heights = [float(part.center[2]) for part in parts] or [line.height for line in lines]
+    low, high = min(heights), max(heights)
+    if parts and high - low > STEP:
+        outlines = [_with_extent(outline, part) for outline, part in zip(outlines, parts, strict=True)]
     if parts:
         name = max(parts, key=lambda p: (float(np.prod(np.sort(p.half)[1:])), p.name)).name
     else:
         name = "+".join(sorted({leaves[line.sheet].parts[0] for line in lines})[:3])
-    return BasePatch(name, tuple(sorted(p.name for p in parts)), min(heights), max(heights), tuple(outlines))
+    return BasePatch(name, tuple(sorted(p.name for p in parts)), low, high, (*outlines, *strips))
 
 
-def _connecting(graph: nx.Graph[object], members: list[int], lines: list[Line]) -> list[Line]:
-    """The lines without which the parts would not hang together."""
-    parts_only = graph.subgraph(members)
-    label = {n: k for k, c in enumerate(nx.connected_components(parts_only)) for n in c}
-    joint: nx.Graph[int] = nx.Graph()
-    joint.add_nodes_from(label.values())
-    needed = []
-    for line in lines:
-        touched = sorted({label[n] for n in graph.neighbors(line) if isinstance(n, int)})
-        if any(not nx.has_path(joint, touched[0], t) for t in touched[1:]):
-            needed.append(line)
-            nx.add_path(joint, touched)
-        elif not touched:
-            needed.append(line)
-    return needed
+def _connecting(joined: Groups, touched: list[list[int]]) -> list[bool]:
+    """Of each line, whether the parts of its base would not hang together without it.
+
+    Args:
+        joined: which parts hang together; more and more is joined here.
+        touched: for each line, the parts that touch it.
+    """
+    is_needed = []
+    for members in touched:
+        apart = {joined.of(j) for j in members}
+        is_needed.append(len(apart) != 1)
+        for j in apart:
+            joined.join(members[0], j)
+    return is_needed
 
 
-def _outline(part: Segment, *, is_stepped: bool) -> Outline:
-    level = np.hypot(part.axes[:, 0], part.axes[:, 1]) * part.half
-    along = part.axes[int(np.argmax(level)), :2]
-    made = _rectangle(part.name, part.center[:2], along / np.linalg.norm(along), part)
+def _outlines(parts: tuple[Segment, ...]) -> list[Outline]:
+    """What each part covers, seen from above: the tight rectangle along its longest level side."""
+    if not parts:
+        return []
+    axes, half = np.array([part.axes for part in parts]), np.array([part.half for part in parts])
+    level = np.hypot(axes[:, :, 0], axes[:, :, 1]) * half
+    along = axes[np.arange(len(parts)), np.argmax(level, axis=1), :2]
+    along = along / np.sqrt(along[:, None, :] @ along[:, :, None])[:, 0]
+    across = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    turned = np.abs(axes[:, :, :2] @ np.stack([along, across], axis=1).swapaxes(1, 2)).swapaxes(1, 2)
+    reach = (turned @ half[:, :, None])[:, :, 0]
+    return [Outline(p.name, p.center[:2], a, r) for p, a, r in zip(parts, along, reach, strict=True)]
+
+
+def _with_extent(outline: Outline, part: Segment) -> Outline:
     rise = float(np.abs(part.axes[:, 2]) @ part.half)
-    return replace(made, extent=(float(part.center[2]) - rise, float(part.center[2]) + rise)) if is_stepped else made
-
-
-def _rectangle(name: str, center: Array, along: Array, part: Segment) -> Outline:
-    across = np.array([-along[1], along[0]])
-    reach = np.abs(part.axes[:, :2] @ np.stack([along, across]).T).T @ part.half
-    return Outline(name, center, along, reach)
+    return replace(outline, extent=(float(part.center[2]) - rise, float(part.center[2]) + rise))
 
 
 def _strip_outline(leaf: Sheet, line: Line) -> Outline:

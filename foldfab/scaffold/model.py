@@ -6,7 +6,7 @@ Everything here stands in the canonical frame: the folding direction d is -Z, le
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from foldfab.geometry.arrays import Array, frozen
 from foldfab.recipe.model import Recipe
@@ -103,15 +103,19 @@ class Scaffold:
     """Sorted by name."""
     notes: tuple[str, ...] = ()
     """What the abstraction did to parts that a user may want to know."""
+    _bases: dict[str, BasePatch] = field(init=False, repr=False)
+    _patches: dict[str, Patch] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "direction", frozen(self.direction, 3))
         object.__setattr__(self, "rotation", frozen(self.rotation, 3, 3))
+        object.__setattr__(self, "_bases", {base.name: base for base in self.bases})
+        object.__setattr__(self, "_patches", {patch.name: patch for patch in self.patches})
 
     def base(self, name: str) -> BasePatch:
         """The base patch of that name."""
-        return next(base for base in self.bases if base.name == name)
+        return self._bases[name]
 
     def patch(self, name: str) -> Patch:
         """The foldable patch of that name."""
-        return next(patch for patch in self.patches if patch.name == name)
+        return self._patches[name]

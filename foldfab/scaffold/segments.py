@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from foldfab.geometry.arrays import Array
+from foldfab.geometry.arrays import Array, Bools
 from foldfab.geometry.boxes import Boxes
-from foldfab.geometry.rotation import upright
-from foldfab.recipe.model import Part, Recipe
+from foldfab.geometry.rotation import cross, upright
+from foldfab.recipe.model import Recipe
 
 ROD_RATIO = 3.0
 """A part is a rod where its longest side is this many times the middle one, and the middle one not a sheet's."""
@@ -29,6 +29,9 @@ GRID_DIGITS = 3
 """Places and sizes stand on a grid of 1 µm in print: faces are flush, or far enough apart for the solid kernel."""
 UPRIGHT = 1e-6
 """Sine of the tilt below which a rod stands upright."""
+
+VERTICAL = np.array([0.0, 0.0, 1.0])
+"""-d in the canonical frame."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,9 +57,14 @@ class Segment:
 
 def segments(recipe: Recipe, direction: Array, scale: float) -> tuple[Segment, ...]:
     """All parts of the recipe, turned so that d = -Z and scaled to print millimetres, sorted by name."""
+    parts = sorted(recipe.parts, key=lambda part: part.name)
     turn = upright(direction)
-    made = [_segment(part, turn, scale) for part in recipe.parts]
-    return tuple(sorted(made, key=lambda s: s.name))
+    axes = _settled(np.array([part.axes for part in parts]) @ turn.T)
+    half = _on_grid(scale * np.array([part.size for part in parts]) / 2)
+    center = _on_grid(((scale * turn) @ np.array([part.center for part in parts])[:, :, None])[:, :, 0])
+    level = _are_perpendicular(axes, half).tolist()
+    found = zip(parts, center, axes, half, level, strict=True)
+    return tuple(Segment(part.name, c, a, h, part.hingeable, is_base) for part, c, a, h, is_base in found)
 
 
 def as_boxes(many: tuple[Segment, ...]) -> Boxes:
@@ -77,7 +85,7 @@ def sheet(segment: Segment) -> tuple[Array, Array, float, float, float]:
     thin, middle, long = np.argsort(segment.half, kind="stable")
     if _is_rod(segment.half):
         return _spanned(segment, segment.axes[long], segment.axes[thin])
-    found = _spanned(segment, np.cross(segment.axes[thin], _level(segment.axes[thin])), segment.axes[thin])
+    found = _spanned(segment, cross(segment.axes[thin], _level(segment.axes[thin])), segment.axes[thin])
     if found[2] * found[3] > FILLING * 4 * segment.half[middle] * segment.half[long]:
         return _spanned(segment, segment.axes[long], segment.axes[thin])
     return found
@@ -100,35 +108,35 @@ def is_level(segment: Segment) -> bool:
     return bool(abs(segment.axes[int(np.argmax(segment.half)), 2]) < np.sin(ROD_TILT))
 
 
-def _segment(part: Part, turn: Array, scale: float) -> Segment:
-    axes, half = _settled(part.axes @ turn.T), _on_grid(scale * part.size / 2)
-    center = _on_grid(scale * turn @ part.center)
-    return Segment(part.name, center, axes, half, part.hingeable, _is_perpendicular(axes, half))
-
-
 def _settled(axes: Array) -> Array:
-    """The orthonormal rows (3, 3) with what is all but zero made zero, so that nearly flush faces become flush."""
+    """The orthonormal rows (n, 3, 3) with what is all but zero made zero, so that nearly flush faces become flush."""
     small = np.abs(axes) < ALL_BUT_ZERO
-    if not (small & (axes != 0)).any():
-        return axes
-    left, _, right = np.linalg.svd(np.where(small, 0.0, axes))
-    settled: Array = left @ right
-    return np.where(np.abs(settled) < 1e-12, 0.0, settled)
+    settled = axes.copy()
+    for index in np.nonzero((small & (axes != 0)).any((1, 2)))[0]:
+        left, _, right = np.linalg.svd(np.where(small[index], 0.0, axes[index]))
+        rows = left @ right
+        settled[index] = np.where(np.abs(rows) < 1e-12, 0.0, rows)
+    return settled
 
 
 def _on_grid(lengths: Array) -> Array:
     return np.round(lengths, GRID_DIGITS) + 0.0
 
 
-def _is_perpendicular(axes: Array, half: Array) -> bool:
-    thin, _, long = np.argsort(half, kind="stable")
-    if _is_rod(half):
-        return bool(abs(axes[long, 2]) < np.sin(ROD_TILT))
-    return bool(abs(axes[thin, 2]) > np.cos(PLATE_TILT))
+def _are_perpendicular(axes: Array, half: Array) -> Bools:
+    """Whether each part (n,), by its axes (n, 3, 3) and half lengths (n, 3), is perpendicular to d."""
+    order = np.argsort(half, axis=1, kind="stable")
+    every = np.arange(len(half))
+    thin, middle, long = np.sort(half, axis=1).T
+    is_rod = (long > ROD_RATIO * middle) & (middle < ROD_RATIO * thin)
+    level_rod = np.abs(axes[every, order[:, 2], 2]) < np.sin(ROD_TILT)
+    level_plate = np.abs(axes[every, order[:, 0], 2]) > np.cos(PLATE_TILT)
+    level: Bools = np.where(is_rod, level_rod, level_plate)
+    return level
 
 
 def _is_rod(half: Array) -> bool:
-    thin, middle, long = np.sort(half)
+    thin, middle, long = sorted(half.tolist())
     return bool(long > ROD_RATIO * middle and middle < ROD_RATIO * thin)
 
 
@@ -139,12 +147,12 @@ def _spanned(segment: Segment, axis: Array, normal: Array) -> tuple[Array, Array
     along = _level(axis) if np.hypot(axis[0], axis[1]) > UPRIGHT else _level(normal)
     up = axis - (axis @ along) * along
     up = up / np.linalg.norm(up) * np.sign(up[2])
-    extent = 2 * np.abs(segment.axes @ np.stack([along, up, np.cross(along, up)]).T).T @ segment.half
+    extent = 2 * np.abs(segment.axes @ np.array([along, up, cross(along, up)]).T).T @ segment.half
     return along, up, float(extent[0]), float(extent[1]), float(extent[2])
 
 
 def _level(direction: Array) -> Array:
     """(3,) the horizontal unit vector across a direction that is not upright."""
-    across = np.cross([0.0, 0.0, 1.0], direction)
+    across = cross(VERTICAL, direction)
     unit: Array = across / np.linalg.norm(across)
     return unit

@@ -11,13 +11,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from foldfab.geometry.arrays import Array
-from foldfab.geometry.boxes import Boxes
+from foldfab.geometry.boxes import Boxes, bounds, near_pairs
+from foldfab.geometry.rotation import cross
 from foldfab.scaffold.segments import Segment, sheet
 
 PARALLEL = np.cos(np.radians(5.0))
 """Sheets within this angle of each other count as parallel."""
 OVERLAP = 0.5
 """Sheets are merged where they share at least this much of the smaller one, in width and in length."""
+SLACK = 1e-6
+"""What rounding may make of a cosine or of a length in mm, and far more."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,7 +45,7 @@ class Sheet:
     @property
     def normal(self) -> Array:
         """(3,) unit."""
-        across: Array = np.cross(self.along, self.up)
+        across: Array = cross(self.along, self.up)
         return across
 
     @property
@@ -96,14 +99,36 @@ def joined(a: Sheet, b: Sheet) -> Sheet:
 
 
 def _merged(rest: list[Sheet], distance: float) -> list[Sheet]:
-    done: list[Sheet] = []
-    for new in rest:
-        twin = next((i for i, old in enumerate(done) if _are_one(old, new, distance)), None)
+    """Each sheet in turn is joined to the first before it, as that has grown by then, with which it is one."""
+    flat = as_boxes(tuple(rest))
+    rivals = [set[int]() for _ in rest]
+    for old, new in _alike(flat, flat, distance):
+        if old < new:
+            rivals[new].add(old)
+    done: dict[int, Sheet] = {}
+    for new, leaf in enumerate(rest):
+        twin = next((i for i in sorted(rivals[new]) if i in done and _are_one(done[i], leaf, distance)), None)
         if twin is None:
-            done.append(new)
-        else:
-            done[twin] = joined(done[twin], new)
-    return done
+            done[new] = leaf
+            continue
+        done[twin] = joined(done[twin], leaf)
+        for _, later in _alike(as_boxes((done[twin],)), flat[new + 1 :], distance):
+            rivals[new + 1 + later].add(twin)
+    return list(done.values())
+
+
+def _alike(a: Boxes, b: Boxes, distance: float) -> list[tuple[int, int]]:
+    """All pairs of sheets, as `as_boxes` gives them, that may be one, and few others: what is parallel and close.
+
+    Seen in the plane of `a`, `b` may be turned: the tight rectangle around it lies in a square around its circle.
+    """
+    around = np.sqrt(2.0) * np.hypot(b.half[:, 0], b.half[:, 1])[:, None] + distance + SLACK
+    flat = Boxes(a.center, a.axes, a.half * [1.0, 1.0, 0.0])
+    i, j = near_pairs(bounds(flat), (b.center - around, b.center + around))
+    normal, offset = a.axes[i, 2], b.center[j] - a.center[i]
+    is_parallel = np.abs((normal * b.axes[j, 2]).sum(1)) > PARALLEL - SLACK
+    kept = is_parallel & (np.abs((normal * offset).sum(1)) < distance + SLACK)
+    return list(zip(i[kept].tolist(), j[kept].tolist(), strict=True))
 
 
 def _are_one(a: Sheet, b: Sheet, distance: float) -> bool:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import itertools
+from unittest import mock
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from foldfab.geometry import boxes as module
 from foldfab.geometry.arrays import Array
-from foldfab.geometry.boxes import Boxes, bounds, close_pairs, grown, moved, overlaps, stacked
+from foldfab.geometry.boxes import Boxes, bounds, close_pairs, grown, moved, near_pairs, overlaps, stacked
 
 MARGIN = 1e-6
 SIGNS = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
@@ -118,6 +120,52 @@ def test_close_pairs_are_all_pairs_that_overlap(seed: int) -> None:
     found = set(zip(*(index.tolist() for index in close_pairs(a, b)), strict=True))
     expected = {(i, j) for i in range(9) for j in range(7) if overlaps(a[[i]], b[[j]])[0]}
     assert found == expected
+
+
+def spread(seed: int, count: int) -> tuple[Array, Array]:
+    """Bounds on a coarse lattice, so that many touch; some as large as all together, some flat, some the same."""
+    rng = np.random.default_rng(seed)
+    low = rng.integers(-12, 12, (count, 3)).astype(float)
+    size = rng.integers(0, 4, (count, 3)) * rng.choice([1.0, 1.0, 1.0, 12.0], (count, 3))
+    return low, low + size
+
+
+def all_pairs(a: tuple[Array, Array], b: tuple[Array, Array]) -> list[list[int]]:
+    """Brute force."""
+    near = (a[0][:, None] <= b[1][None]).all(-1) & (b[0][None] <= a[1][:, None]).all(-1)
+    return [index.tolist() for index in np.nonzero(near)]
+
+
+@given(seeds, st.integers(0, 80), st.integers(0, 80))
+@steady
+def test_halving_space_finds_exactly_all_pairs_in_order(seed: int, n: int, m: int) -> None:
+    a, b = spread(seed, n), spread(seed + 1, m)
+    expected = all_pairs(a, b)
+    assert [index.tolist() for index in near_pairs(a, b)] == expected
+    with mock.patch.multiple(module, DENSE=-1 if n * m else 0, FEW=9):
+        assert [index.tolist() for index in near_pairs(a, b)] == expected
+
+
+@given(seeds)
+@settings(deadline=None, derandomize=True, max_examples=8)
+def test_many_boxes_have_the_close_pairs_of_brute_force(seed: int) -> None:
+    many = some(seed, 700)
+    scattered = moved(many, np.random.default_rng(seed).uniform(-30, 30, (700, 3)))
+    i, j = (index.reshape(-1) for index in np.meshgrid(range(700), range(700), indexing="ij"))
+    hit = overlaps(scattered[i], scattered[j])
+    found = close_pairs(scattered, scattered)
+    assert (found[0] == i[hit]).all() and (found[1] == j[hit]).all()
+
+
+def test_pairs_that_are_compared_grow_as_the_boxes_do() -> None:
+    compared = []
+    for side in (32, 64, 128):
+        low = np.array([(x, y, 0.0) for x in range(side) for y in range(side)])
+        with mock.patch.object(module, "_meeting", wraps=module._meeting) as meeting:
+            i, _ = near_pairs((low, low + 1.2), (low, low + 1.2))
+        assert len(i) == (3 * side - 2) ** 2
+        compared.append(sum(len(call.args[0][0]) * len(call.args[1][0]) for call in meeting.call_args_list))
+    assert compared[2] < 4.4 * compared[1] < 4.4 * 4.4 * compared[0]
 
 
 def test_nothing_has_no_close_pairs() -> None:

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from foldfab.geometry.rotation import cosine, sine, upright
+from foldfab.geometry.rotation import cosine, cross, sine, upright
 
 AXES = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
 DOWN = np.array([0.0, 0.0, -1.0])
@@ -25,6 +25,12 @@ def test_other_angles_keep_their_sines_and_cosines() -> None:
     angles = np.linspace(-7, 7, 99)
     assert np.allclose(cosine(angles), np.cos(angles), atol=1e-11, rtol=0)
     assert np.allclose(sine(angles), np.sin(angles), atol=1e-11, rtol=0)
+
+
+@given(st.lists(entry, min_size=6, max_size=6))
+def test_the_cross_product_is_that_of_numpy(entries: list[float]) -> None:
+    a, b = np.array(entries[:3]), np.array(entries[3:])
+    assert cross(a, b).tobytes() == np.cross(a, b).tobytes()
 
 
 @pytest.mark.parametrize("axis", AXES)

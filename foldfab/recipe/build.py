@@ -74,6 +74,10 @@ def _fold(form: FoldForm) -> FoldOptions:
         shrink_steps=form.shrink_steps,
         slanting=form.slanting,
         stay_in_box=form.stay_in_box,
+        ordering=form.ordering,
+        collisions=form.collisions,
+        symmetry=form.symmetry,
+        time_limit=float(form.time_limit),
     )
 
 

@@ -22,7 +22,7 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
-from foldfab.recipe.model import FoldOptions, Posture, PrintOptions
+from foldfab.recipe.model import Collisions, FoldOptions, Ordering, Posture, PrintOptions
 from foldfab.recipe.names import folder_name_problem, has_control_characters, part_name_problem
 from foldfab.recipe.printers import DEFAULT_PRINTER, LARGEST, PRINTERS, SMALLEST
 
@@ -162,6 +162,22 @@ class FoldForm(Form):
     slanting: bool = Field(default=_FOLD.slanting, description="Whether two bases may shear past each other.")
     stay_in_box: bool = Field(
         default=_FOLD.stay_in_box, description="Whether the fold must stay within the furniture's bounding box."
+    )
+    ordering: Ordering = Field(
+        default=_FOLD.ordering, description="The paper's greedy order, or modifications and order chosen in one shot."
+    )
+    collisions: Collisions = Field(
+        default=_FOLD.collisions,
+        description="What rules options out: shapes that meet in time, or the paper's times and regions that overlap.",
+    )
+    symmetry: bool = Field(
+        default=_FOLD.symmetry, description="Whether parts that mirror each other are treated alike."
+    )
+    time_limit: float = Field(
+        default=_FOLD.time_limit,
+        gt=0,
+        le=3600,
+        description="Seconds of work on an ordinary machine, counted in work and not in wall time.",
     )
 
 

@@ -8,6 +8,8 @@ from typing import Literal
 from foldfab.geometry.arrays import Array, frozen
 
 Posture = Literal["open", "folded"]
+Ordering = Literal["greedy", "optimal"]
+Collisions = Literal["swept", "regions"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,6 +47,15 @@ class FoldOptions:
     """Whether H-scaffolds may fold slanted (T-scaffolds always may)."""
     stay_in_box: bool = False
     """Whether the fold must stay within the bounding box of the input."""
+    ordering: Ordering = "greedy"
+    """How units are ordered: greedily (section 5.5), or modifications and order chosen in one shot."""
+    collisions: Collisions = "swept"
+    """What makes two options conflict: shapes that meet in time, or the paper's folding times and regions that both
+    overlap (section 5.4)."""
+    symmetry: bool = False
+    """Whether parts that mirror each other are treated alike."""
+    time_limit: float = 2.0
+    """Seconds on an ordinary machine, counted in work done, so that the same input gives the same answer."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,6 +22,10 @@ def to_json(recipe: Recipe) -> dict[str, Any]:
             "shrink_steps": recipe.fold.shrink_steps,
             "slanting": recipe.fold.slanting,
             "stay_in_box": recipe.fold.stay_in_box,
+            "ordering": recipe.fold.ordering,
+            "collisions": recipe.fold.collisions,
+            "symmetry": recipe.fold.symmetry,
+            "time_limit": recipe.fold.time_limit,
         },
         "print": _print(recipe.print),
     }

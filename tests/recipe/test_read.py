@@ -105,6 +105,13 @@ BROKEN = [
     (changed("fold", "max_hinges", 2.0), "fold.max_hinges", "whole number"),
     (changed("fold", "shrink_steps", 21), "fold.shrink_steps", "from 1 to 20"),
     (changed("fold", "slanting", 1), "fold.slanting", "true or false"),
+    (changed("fold", "ordering", "best"), "fold.ordering", '"greedy" or "optimal", not \'best\''),
+    (changed("fold", "collisions", True), "fold.collisions", '"swept" or "regions", not true'),
+    (changed("fold", "symmetry", "yes"), "fold.symmetry", "true or false"),
+    (changed("fold", "time_limit", 0), "fold.time_limit", "above 0, at most 3600, not 0"),
+    (changed("fold", "time_limit", 3601), "fold.time_limit", "at most 3600"),
+    (changed("fold", "time_limit", float("inf")), "fold.time_limit", "infinity"),
+    (changed("fold", "time_limits", 1), "fold.time_limits", 'did you mean "time_limit"'),
     (changed("fold", "thickness", 4), "fold.thickness", "belongs in print"),
     (changed("print", "thickness", 0.5), "print.thickness", "from 2 to 20"),
     (changed("print", "clearance", 0.01), "print.clearance", "0.15 to 1"),
@@ -148,6 +155,14 @@ def test_defaults() -> None:
     assert (recipe.name, recipe.direction, recipe.about, recipe.print.scale) == ("stool", None, "", None)
     assert recipe.print.printer.name == "prusa-mk4"
     assert recipe.parts[0].hingeable
+
+
+def test_the_solvers_own_options() -> None:
+    fold = parse(STOOL, "stool.json", "stool").fold
+    assert (fold.ordering, fold.collisions, fold.symmetry, fold.time_limit) == ("greedy", "swept", False, 2.0)
+    given = {"ordering": "optimal", "collisions": "regions", "symmetry": True, "time_limit": 30}
+    fold = parse({**STOOL, "fold": given}, "stool.json", "stool").fold
+    assert (fold.ordering, fold.collisions, fold.symmetry, fold.time_limit) == ("optimal", "regions", True, 30.0)
 
 
 def test_units_are_converted() -> None:

@@ -32,7 +32,8 @@ def test_a_recipe_may_name_its_schema() -> None:
 
 
 @pytest.mark.parametrize(
-    "extra", [{"x": 1}, {"fold": {"alpha": 2}}, {"direction": "up"}, {"print": {"printer": "mk9"}}]
+    "extra",
+    [{"x": 1}, {"fold": {"alpha": 2}}, {"fold": {"time_limit": 0}}, {"direction": "up"}, {"print": {"printer": "mk9"}}],
 )
 def test_the_schema_refuses(extra: dict[str, object]) -> None:
     with pytest.raises(jsonschema.ValidationError):

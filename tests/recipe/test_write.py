@@ -43,7 +43,15 @@ def recipes(draw: st.DrawFn) -> dict[str, Any]:
         }
         for i in range(draw(st.integers(1, 3)))
     ]
-    fold = {"alpha": draw(st.floats(0, 1)), "max_hinges": draw(st.integers(1, 9)), "slanting": draw(st.booleans())}
+    fold = {
+        "alpha": draw(st.floats(0, 1)),
+        "max_hinges": draw(st.integers(1, 9)),
+        "slanting": draw(st.booleans()),
+        "ordering": draw(st.sampled_from(["greedy", "optimal"])),
+        "collisions": draw(st.sampled_from(["swept", "regions"])),
+        "symmetry": draw(st.booleans()),
+        "time_limit": draw(st.floats(0.001, 3600)),
+    }
     options = {
         "scale": draw(st.just("fit") | st.floats(0.01, 10)),
         "printer": draw(st.sampled_from(["ender-3", {"name": "mine", "build_volume": [100, 200, 300]}])),
@@ -56,5 +64,6 @@ def recipes(draw: st.DrawFn) -> dict[str, Any]:
 @given(recipes())
 def test_round_trip(data: dict[str, Any]) -> None:
     written = to_json(parse(data, "any.json", "any"))
+    assert data["fold"].items() <= written["fold"].items()
     again = json.loads(json.dumps(written, allow_nan=False))
     assert to_json(parse(again, "again.json", "unused")) == written

@@ -30,8 +30,11 @@ _OPTIONS: tuple[tuple[str, str, str], ...] = (
     ("--alpha", "A", "weight of inserted hinges (1) against shrinking (0)"),
     ("--max-hinges", "N", "most hinges that may be inserted in one patch, 1 to 9"),
     ("--shrink-steps", "N", "how many pieces a patch is cut into for shrinking, 1 to 20"),
+    ("--ordering", "O", "greedy, as in the paper, or optimal: modifications and order chosen in one shot"),
+    ("--collisions", "C", "swept: shapes that meet in time; or regions: the paper's own test"),
+    ("--time-limit", "SECONDS", "of work on an ordinary machine, up to 3600"),
 )
-_SWITCHES = ("slanting", "stay_in_box")
+_SWITCHES = ("slanting", "stay_in_box", "symmetry")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -210,6 +213,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
         group.add_argument(option, metavar=metavar, help=text)
     group.add_argument("--no-slanting", dest="slanting", action="store_false", default=None, help="fold in place only")
     group.add_argument("--stay-in-box", action="store_true", default=None, help="stay within the bounding box")
+    group.add_argument("--symmetry", action="store_true", default=None, help="treat mirrored parts alike")
 
 
 class _Version(argparse.Action):

@@ -16,6 +16,8 @@ from foldfab.recipe.printers import printer as find_printer
 from foldfab.recipe.problems import problems_of
 
 SOURCE = "command line"
+_FLOATS = ("alpha", "time_limit")
+"""Options of the fold that are numbers but not counts."""
 
 
 class _DirectionForm(Form):
@@ -36,6 +38,10 @@ def override(
     shrink_steps: str | int | None = None,
     slanting: bool | None = None,
     stay_in_box: bool | None = None,
+    ordering: str | None = None,
+    collisions: str | None = None,
+    symmetry: bool | None = None,
+    time_limit: str | float | None = None,
 ) -> Recipe:
     """`recipe` with every value replaced that is not None; numbers may come as text.
 
@@ -45,21 +51,22 @@ def override(
     Raises:
         RecipeError: every value that is not allowed, with the option's name as its place.
     """
-    fold = {"alpha": alpha, "max_hinges": max_hinges, "shrink_steps": shrink_steps}
-    fold_given = {**_given(fold), **_present({"slanting": slanting, "stay_in_box": stay_in_box})}
-    print_given = _given({"clearance": clearance, "thickness": thickness, "posture": posture, "scale": _ratio(scale)})
+    numbers = {"alpha": alpha, "max_hinges": max_hinges, "shrink_steps": shrink_steps, "time_limit": time_limit}
+    switches = {"slanting": slanting, "stay_in_box": stay_in_box, "symmetry": symmetry}
+    fold = _given({**numbers, **switches, "ordering": ordering, "collisions": collisions})
+    options = _given({"clearance": clearance, "thickness": thickness, "posture": posture, "scale": _ratio(scale)})
     way = {} if direction is None else {"direction": _vector(direction)}
-    problems = _check(_DirectionForm, way) + _check(FoldForm, fold_given) + _check(PrintForm, print_given)
+    problems = _check(_DirectionForm, way) + _check(FoldForm, fold) + _check(PrintForm, options)
     problems += _check_printer(printer)
     if problems:
         raise RecipeError(SOURCE, tuple(problems))
-    return _replaced(recipe, way, fold_given, print_given, printer)
+    return _replaced(recipe, way, fold, options, printer)
 
 
 def _replaced(
     recipe: Recipe, way: dict[str, Any], fold: dict[str, Any], options: dict[str, Any], printer: str | None
 ) -> Recipe:
-    fold = {key: float(value) if key == "alpha" else value for key, value in fold.items()}
+    fold = {key: float(value) if key in _FLOATS else value for key, value in fold.items()}
     options = {key: float(value) if isinstance(value, int) else value for key, value in options.items()}
     if options.get("scale") == "fit":
         options["scale"] = None
@@ -73,12 +80,10 @@ def _replaced(
     )
 
 
-def _present(values: dict[str, Any]) -> dict[str, Any]:
-    return {key: value for key, value in values.items() if value is not None}
-
-
 def _given(values: dict[str, Any]) -> dict[str, Any]:
-    return {key: _number(value) if isinstance(value, str) else value for key, value in _present(values).items()}
+    """Without what is None, and with numbers for the texts that hold one."""
+    present = {key: value for key, value in values.items() if value is not None}
+    return {key: _number(value) if isinstance(value, str) else value for key, value in present.items()}
 
 
 def _number(text: str) -> int | float | str:

@@ -32,12 +32,18 @@ def test_text_becomes_values() -> None:
         shrink_steps="4",
         slanting=False,
         stay_in_box=True,
+        ordering="optimal",
+        collisions="regions",
+        symmetry=True,
+        time_limit="30",
     )
     assert recipe.direction == pytest.approx([0, 0, -1])
     assert recipe.print.printer.build_volume == (200, 200, 180)
     assert (recipe.print.scale, recipe.print.clearance, recipe.print.thickness) == (0.2, 0.25, 3.0)
     assert (recipe.fold.alpha, recipe.fold.max_hinges, recipe.fold.shrink_steps) == (1.0, 5, 4)
     assert (recipe.fold.slanting, recipe.fold.stay_in_box, recipe.print.posture) == (False, True, "folded")
+    assert (recipe.fold.ordering, recipe.fold.collisions, recipe.fold.symmetry) == ("optimal", "regions", True)
+    assert recipe.fold.time_limit == 30.0 and isinstance(recipe.fold.time_limit, float)
 
 
 def test_back_to_fit_and_auto() -> None:
@@ -55,6 +61,13 @@ def test_back_to_fit_and_auto() -> None:
         ({"alpha": "nan"}, "--alpha", "NaN"),
         ({"max_hinges": "2.5"}, "--max-hinges", "whole number"),
         ({"shrink_steps": 0}, "--shrink-steps", "from 1 to 20"),
+        ({"ordering": "fastest"}, "--ordering", '"greedy" or "optimal", not \'fastest\''),
+        ({"ordering": "1"}, "--ordering", '"greedy" or "optimal"'),
+        ({"collisions": "none"}, "--collisions", '"swept" or "regions"'),
+        ({"symmetry": "yes"}, "--symmetry", "true or false"),
+        ({"time_limit": "0"}, "--time-limit", "above 0, at most 3600"),
+        ({"time_limit": "5000"}, "--time-limit", "at most 3600"),
+        ({"time_limit": "soon"}, "--time-limit", "'soon'"),
         ({"thickness": "0"}, "--thickness", "from 2 to 20"),
         ({"clearance": "5"}, "--clearance", "0.15 to 1"),
         ({"posture": "edge"}, "--posture", "folded"),

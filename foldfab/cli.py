@@ -35,6 +35,7 @@ _OPTIONS: tuple[tuple[str, str, str], ...] = (
     ("--time-limit", "SECONDS", "of work on an ordinary machine, up to 3600"),
 )
 _SWITCHES = ("slanting", "stay_in_box", "symmetry")
+_REPEATED = (("--rigid", "NAME", "a part that must not get a hinge in its middle; may be given again for others"),)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -211,6 +212,8 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("options that replace the recipe's")
     for option, metavar, text in _OPTIONS:
         group.add_argument(option, metavar=metavar, help=text)
+    for option, metavar, text in _REPEATED:
+        group.add_argument(option, metavar=metavar, action="append", help=text)
     group.add_argument("--no-slanting", dest="slanting", action="store_false", default=None, help="fold in place only")
     group.add_argument("--stay-in-box", action="store_true", default=None, help="stay within the bounding box")
     group.add_argument("--symmetry", action="store_true", default=None, help="treat mirrored parts alike")
@@ -231,7 +234,7 @@ class _Version(argparse.Action):
 
 def _joined(argv: Sequence[str]) -> list[str]:
     """Values that begin with a minus are tied to their option; argparse would take `-z` for an option of its own."""
-    valued = {option for option, _, _ in _OPTIONS}
+    valued = {option for option, _, _ in (*_OPTIONS, *_REPEATED)}
     arguments, left = list[str](), iter(argv)
     for argument in left:
         value = next(left, None) if argument in valued else None
@@ -240,7 +243,7 @@ def _joined(argv: Sequence[str]) -> list[str]:
 
 
 def _option_names() -> tuple[str, ...]:
-    return tuple(option[2:].replace("-", "_") for option, _, _ in _OPTIONS)
+    return tuple(option[2:].replace("-", "_") for option, _, _ in (*_OPTIONS, *_REPEATED))
 
 
 def _print_json(facts: dict[str, Any]) -> None:

@@ -92,7 +92,7 @@ def test_only_given_options_override(pipeline: Pipeline) -> None:
 def test_all_options(pipeline: Pipeline) -> None:
     line = "fold bench --direction -z --posture folded --printer ender-3 --scale 1:5 --clearance 0.2 --thickness 3"
     more = "--alpha 0.1 --max-hinges 5 --shrink-steps 4 --no-slanting --stay-in-box"
-    last = "--ordering optimal --collisions regions --symmetry --time-limit 30"
+    last = "--ordering optimal --collisions regions --symmetry --time-limit 30 --rigid seat --rigid -back"
     assert cli.main([*line.split(), *more.split(), *last.split()]) == 0
     assert pipeline.calls[0][2] == {
         "direction": "-z",
@@ -110,6 +110,7 @@ def test_all_options(pipeline: Pipeline) -> None:
         "collisions": "regions",
         "symmetry": True,
         "time_limit": "30",
+        "rigid": ["seat", "-back"],
     }
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 from dataclasses import replace
+from difflib import get_close_matches
 from typing import Any
 
 from pydantic import ValidationError
@@ -12,12 +14,15 @@ from foldfab.errors import Problem, RecipeError
 from foldfab.recipe.build import unit_direction
 from foldfab.recipe.form import Direction, FoldForm, Form, PrintForm
 from foldfab.recipe.model import Recipe
+from foldfab.recipe.names import same_name
 from foldfab.recipe.printers import printer as find_printer
-from foldfab.recipe.problems import problems_of
+from foldfab.recipe.problems import problems_of, shown
 
 SOURCE = "command line"
 _FLOATS = ("alpha", "time_limit")
 """Options of the fold that are numbers but not counts."""
+_MOST_NAMES = 30
+"""More parts than these are counted, not listed."""
 
 
 class _DirectionForm(Form):
@@ -42,11 +47,12 @@ def override(
     collisions: str | None = None,
     symmetry: bool | None = None,
     time_limit: str | float | None = None,
+    rigid: Collection[str] = (),
 ) -> Recipe:
-    """`recipe` with every value replaced that is not None; numbers may come as text.
+    """`recipe` with every value replaced that is not None, and the parts named in `rigid` no longer hingeable.
 
-    A direction is an axis such as "-x", a vector such as "0,0,-1", or "auto"; a scale is "fit", a number, or a
-    ratio such as "1:5".
+    Numbers may come as text. A direction is an axis such as "-x", a vector such as "0,0,-1", or "auto"; a scale is
+    "fit", a number, or a ratio such as "1:5".
 
     Raises:
         RecipeError: every value that is not allowed, with the option's name as its place.
@@ -57,10 +63,11 @@ def override(
     options = _given({"clearance": clearance, "thickness": thickness, "posture": posture, "scale": _ratio(scale)})
     way = {} if direction is None else {"direction": _vector(direction)}
     problems = _check(_DirectionForm, way) + _check(FoldForm, fold) + _check(PrintForm, options)
-    problems += _check_printer(printer)
+    problems += _check_printer(printer) + _check_rigid(recipe, rigid)
     if problems:
         raise RecipeError(SOURCE, tuple(problems))
-    return _replaced(recipe, way, fold, options, printer)
+    parts = tuple(replace(part, hingeable=False) if part.name in rigid else part for part in recipe.parts)
+    return _replaced(replace(recipe, parts=parts), way, fold, options, printer)
 
 
 def _replaced(
@@ -124,6 +131,23 @@ def _check_printer(text: str | None) -> list[Problem]:
     except ValueError as error:
         return [Problem("--printer", str(error))]
     return []
+
+
+def _check_rigid(recipe: Recipe, rigid: Collection[str]) -> list[Problem]:
+    names = [part.name for part in recipe.parts]
+    unknown = [_unknown_part(name, names) for name in dict.fromkeys(rigid) if name not in names]
+    if not unknown:
+        return []
+    rest = [f"and {len(names) - _MOST_NAMES} more"] if len(names) > _MOST_NAMES else []
+    known = ", ".join([*names[:_MOST_NAMES], *rest])
+    return [Problem("--rigid", f"no part is named {' or '.join(unknown)}; there are {known}")]
+
+
+def _unknown_part(name: str, names: list[str]) -> str:
+    """The name, and those that may have been meant."""
+    keys = {same_name(known): known for known in names}
+    close = [keys[key] for key in get_close_matches(same_name(name), keys, n=3)]
+    return f"{shown(name)} (did you mean {' or '.join(close)}?)" if close else shown(name)
 
 
 def _option(place: str) -> str:

@@ -8,6 +8,7 @@ import pytest
 
 from foldfab.errors import RecipeError
 from foldfab.recipe.edit import override
+from foldfab.recipe.model import Recipe
 from foldfab.recipe.read import parse
 
 RECIPE = parse({"parts": [{"name": "a", "box": {"center": [0, 0, 0], "size": [1, 1, 1]}}]}, "a.json", "a")
@@ -91,5 +92,33 @@ def test_says_which_option_is_wrong(values: dict[str, Any], place: str, words: s
 
 def test_all_wrong_options_at_once() -> None:
     with pytest.raises(RecipeError) as caught:
-        override(RECIPE, alpha=3, thickness=0, printer="none")
-    assert [problem.place for problem in caught.value.problems] == ["--alpha", "--thickness", "--printer"]
+        override(RECIPE, alpha=3, thickness=0, printer="none", rigid=["b"])
+    places = [problem.place for problem in caught.value.problems]
+    assert places == ["--alpha", "--thickness", "--printer", "--rigid"]
+
+
+def named(*names: str) -> Recipe:
+    """A recipe with parts of those names."""
+    box = {"center": [0, 0, 0], "size": [1, 1, 1]}
+    return parse({"parts": [{"name": name, "box": box} for name in names]}, "a.json", "a")
+
+
+def test_rigid_parts() -> None:
+    recipe = override(named("seat", "back", "leg"), rigid=["leg", "seat", "leg"])
+    assert {part.name: part.hingeable for part in recipe.parts} == {"seat": False, "back": True, "leg": False}
+
+
+def test_unknown_rigid_parts_are_one_problem() -> None:
+    with pytest.raises(RecipeError) as caught:
+        override(named("Seat", "back", "leg"), rigid=["seat", "back", "bakc", "wheel", "wheel"])
+    (problem,) = caught.value.problems
+    assert problem.place == "--rigid"
+    assert problem.text == (
+        "no part is named 'seat' (did you mean Seat?) or 'bakc' (did you mean back?) or 'wheel'; "
+        "there are Seat, back, leg"
+    )
+
+
+def test_many_parts_are_counted() -> None:
+    with pytest.raises(RecipeError, match=r"p29, and 970 more$"):
+        override(named(*(f"p{i}" for i in range(1000))), rigid=["wheel"])

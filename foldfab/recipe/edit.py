@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 from difflib import get_close_matches
 from typing import Any
@@ -13,8 +13,9 @@ from pydantic import ValidationError
 from foldfab.errors import Problem, RecipeError
 from foldfab.recipe.build import unit_direction
 from foldfab.recipe.form import Direction, FoldForm, Form, PrintForm
-from foldfab.recipe.model import Recipe
+from foldfab.recipe.model import Part, Pattern, Recipe
 from foldfab.recipe.names import same_name
+from foldfab.recipe.patterns import hinges_problem, rigid_problem, window_problem
 from foldfab.recipe.printers import printer as find_printer
 from foldfab.recipe.problems import problems_of, shown
 
@@ -62,8 +63,9 @@ def override(
     fold = _given({**numbers, **switches, "ordering": ordering, "collisions": collisions})
     options = _given({"clearance": clearance, "thickness": thickness, "posture": posture, "scale": _ratio(scale)})
     way = {} if direction is None else {"direction": _vector(direction)}
-    problems = _check(_DirectionForm, way) + _check(FoldForm, fold) + _check(PrintForm, options)
-    problems += _check_printer(printer) + _check_rigid(recipe, rigid)
+    wrong = _check(FoldForm, fold)
+    problems = _check(_DirectionForm, way) + wrong + _check(PrintForm, options) + _check_printer(printer)
+    problems += _check_rigid(recipe, rigid) + _check_patterns(recipe, {} if wrong else fold, rigid)
     if problems:
         raise RecipeError(SOURCE, tuple(problems))
     parts = tuple(replace(part, hingeable=False) if part.name in rigid else part for part in recipe.parts)
@@ -141,6 +143,29 @@ def _check_rigid(recipe: Recipe, rigid: Collection[str]) -> list[Problem]:
     rest = [f"and {len(names) - _MOST_NAMES} more"] if len(names) > _MOST_NAMES else []
     known = ", ".join([*names[:_MOST_NAMES], *rest])
     return [Problem("--rigid", f"no part is named {' or '.join(unknown)}; there are {known}")]
+
+
+def _check_patterns(recipe: Recipe, fold: dict[str, Any], rigid: Collection[str]) -> list[Problem]:
+    """A problem for each pinned or forbidden modification that an option has made impossible."""
+    found: list[tuple[str, str, str | None]] = []
+    for where, part, pattern in _patterns(recipe):
+        if pattern.window is not None:
+            text = window_problem(pattern.window, fold.get("shrink_steps"))
+            found.append(("--shrink-steps", f"{where}.window", text))
+        if pattern.hinges is not None:
+            found.append(("--max-hinges", f"{where}.hinges", hinges_problem(pattern.hinges, fold.get("max_hinges"))))
+        if part.name in rigid and pattern is part.pin:
+            found.append(("--rigid", where, rigid_problem(pattern)))
+    return [Problem(option, f"contradicts {where}: {text}") for option, where, text in found if text]
+
+
+def _patterns(recipe: Recipe) -> Iterator[tuple[str, Part, Pattern]]:
+    """All that is pinned or forbidden, with its place and part."""
+    for index, part in enumerate(recipe.parts):
+        if part.pin is not None:
+            yield f"parts[{index}].pin", part, part.pin
+        for number, pattern in enumerate(part.forbid):
+            yield f"parts[{index}].forbid[{number}]", part, pattern
 
 
 def _unknown_part(name: str, names: list[str]) -> str:

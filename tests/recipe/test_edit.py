@@ -119,6 +119,48 @@ def test_unknown_rigid_parts_are_one_problem() -> None:
     )
 
 
+PIN = {"hinges": 3, "window": [0, 0.4]}
+
+
+@pytest.mark.parametrize(
+    ("values", "place", "text"),
+    [
+        (
+            {"shrink_steps": 4},
+            "--shrink-steps",
+            "contradicts parts[0].pin.window: [0, 0.4] does not lie on the cuts of fold.shrink_steps 4, "
+            "which are multiples of 1/4; the nearest window is [0, 0.5]",
+        ),
+        (
+            {"max_hinges": "2"},
+            "--max-hinges",
+            "contradicts parts[0].pin.hinges: 3 is more than fold.max_hinges 2 allows",
+        ),
+        (
+            {"rigid": ["seat"]},
+            "--rigid",
+            'contradicts parts[0].pin: asks for hinges 3, which the part cannot have because it is "hingeable": false',
+        ),
+        ({"max_hinges": 10}, "--max-hinges", "should be a whole number from 1 to 9, not 10"),
+    ],
+)
+def test_options_that_contradict_a_pin(values: dict[str, Any], place: str, text: str) -> None:
+    box = {"center": [0, 0, 0], "size": [1, 1, 1]}
+    recipe = parse({"parts": [{"name": "seat", "box": box, "pin": PIN}]}, "a.json", "a")
+    with pytest.raises(RecipeError) as caught:
+        override(recipe, **values)
+    (problem,) = caught.value.problems
+    assert (problem.place, problem.text) == (place, text)
+
+
+def test_options_that_contradict_what_is_forbidden() -> None:
+    part = {"name": "seat", "box": {"center": [0, 0, 0], "size": [1, 1, 1]}, "forbid": [{"side": "l"}, PIN]}
+    recipe = parse({"parts": [part]}, "a.json", "a")
+    assert override(recipe, rigid=["seat"], shrink_steps=10).parts[0].forbid == recipe.parts[0].forbid
+    with pytest.raises(RecipeError, match=r"contradicts parts\[0\].forbid\[1\].window"):
+        override(recipe, shrink_steps=3)
+
+
 def test_many_parts_are_counted() -> None:
     with pytest.raises(RecipeError, match=r"p29, and 970 more$"):
         override(named(*(f"p{i}" for i in range(1000))), rigid=["wheel"])

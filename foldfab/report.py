@@ -14,6 +14,8 @@ from foldfab.geometry.arrays import Array
 
 WINDOW = 1e-9
 """How far a window may be from [0, 1] and still be the whole width."""
+PROVEN = 1e-9
+"""A cost that is no further above its bound is the least there is."""
 LAYERS = 20
 """A panel is printed in at least that many layers."""
 COLUMNS = ("step", "part", "fold", "hinges", "width kept", "cost", "why")
@@ -36,8 +38,8 @@ def fold_table(solution: FoldSolution, milliseconds: float) -> str:
     scaffold = solution.scaffold
     total = (
         f"{scaffold.recipe.name} folds along {_vector(scaffold.direction)}: {_count(len(solution.steps), 'unit')}, "
-        f"{_count(len(scaffold.patches), 'foldable patch')}, cost {solution.cost:.4f} "
-        f"(no less than {solution.lower_bound:.4f}), solved in {milliseconds:.0f} ms"
+        f"{_count(len(scaffold.patches), 'foldable patch')}, cost {cost_and_gap(solution)}, "
+        f"ordering {scaffold.recipe.fold.ordering}, solved in {milliseconds:.0f} ms"
     )
     return "\n".join([total, "", *_aligned(rows), *_notes(solution)])
 
@@ -52,8 +54,11 @@ def fold_facts(solution: FoldSolution, milliseconds: float) -> dict[str, Any]:
         "scale": float(solution.scaffold.scale),
         "units": len(solution.steps),
         "foldable_patches": len(solution.scaffold.patches),
+        "ordering": solution.scaffold.recipe.fold.ordering,
         "cost": float(solution.cost),
         "lower_bound": float(solution.lower_bound),
+        "gap": gap(solution),
+        "proven": is_proven(solution),
         "milliseconds": round(milliseconds, 3),
         "order": [{"unit": step.unit, "patches": list(step.patches)} for step in solution.steps],
         "modifications": [_modification(modification) for modification in solution.modifications],
@@ -64,6 +69,23 @@ def fold_facts(solution: FoldSolution, milliseconds: float) -> dict[str, Any]:
 def refused_facts(reason: str) -> dict[str, Any]:
     """The JSON data of furniture that cannot be folded."""
     return {"status": "refused", "reason": reason}
+
+
+def is_proven(solution: FoldSolution) -> bool:
+    """Whether no solution over the same options is cheaper."""
+    return solution.cost - solution.lower_bound < PROVEN
+
+
+def gap(solution: FoldSolution) -> float:
+    """The share of its cost that a better solution could save at most; 0 where it is proven."""
+    return 0.0 if is_proven(solution) else float((solution.cost - solution.lower_bound) / solution.cost)
+
+
+def cost_and_gap(solution: FoldSolution) -> str:
+    """What it costs, and how much less would do at best."""
+    if is_proven(solution):
+        return f"{solution.cost:.4f}, proven least"
+    return f"{solution.cost:.4f}, no less than {solution.lower_bound:.4f} (gap {100 * gap(solution):.1f} %)"
 
 
 def change(modification: Modification) -> str:
@@ -118,7 +140,7 @@ def _figures(assembly: Assembly) -> str:
         ("hinges", f"{inserted} inserted, {len(assembly.joints) - inserted} at bases"),
         ("printed bodies", str(len(assembly.bodies))),
         ("scale", f"1:{1 / scale:.3g}" if scale <= 1 else f"{scale:.3g}:1"),
-        ("cost", f"{assembly.solution.cost:.4f}, no less than {assembly.solution.lower_bound:.4f}"),
+        ("cost", cost_and_gap(assembly.solution)),
     ]
     return "\n".join(["What it is", *(f"  {line}" for line in _aligned(rows))])
 

@@ -19,6 +19,7 @@ PROVEN = 1e-9
 LAYERS = 20
 """A panel is printed in at least that many layers."""
 COLUMNS = ("step", "part", "fold", "hinges", "width kept", "cost", "why")
+ALTERNATIVES = ("rank", "cost", "no less than", "hinges", "narrowed", "order", "otherwise than the first")
 
 
 def summary(assembly: Assembly, folder: Path) -> str:
@@ -66,6 +67,29 @@ def fold_facts(solution: FoldSolution, milliseconds: float) -> dict[str, Any]:
     }
 
 
+def alternatives_table(solutions: Sequence[FoldSolution], milliseconds: float) -> str:
+    """One row for each solution, cheapest first, with what it does otherwise than the first."""
+    first = solutions[0]
+    rows = [ALTERNATIVES]
+    for rank, solution in enumerate(solutions, 1):
+        kept = [modification for modification in solution.modifications if not modification.is_deleted]
+        hinges, narrowed = sum(m.hinges for m in kept), sum(_is_narrowed(m) for m in kept)
+        order = ", ".join(step.unit for step in solution.steps)
+        cells = (f"{solution.cost:.4f}", f"{solution.lower_bound:.4f}", str(hinges), str(narrowed), order)
+        rows.append((str(rank), *cells, "; ".join(_differences(first, solution)) if rank > 1 else ""))
+    scaffold = first.scaffold
+    total = (
+        f"{scaffold.recipe.name} along {_vector(scaffold.direction)}: {_count(len(solutions), 'fold')}, "
+        f"cost {cost_and_gap(first)}, solved in {milliseconds:.0f} ms"
+    )
+    return "\n".join([total, "", *_aligned(rows)])
+
+
+def alternatives_facts(solutions: Sequence[FoldSolution], milliseconds: float) -> dict[str, Any]:
+    """The same as JSON data; each says how long all of them took together."""
+    return {"status": "folded", "alternatives": [fold_facts(solution, milliseconds) for solution in solutions]}
+
+
 def refused_facts(reason: str) -> dict[str, Any]:
     """The JSON data of furniture that cannot be folded."""
     return {"status": "refused", "reason": reason}
@@ -97,9 +121,34 @@ def change(modification: Modification) -> str:
     else:
         if modification.hinges:
             done.append(f"gets {_count(modification.hinges, 'hinge')}")
-        if high - low < 1 - WINDOW:
+        if _is_narrowed(modification):
             done.append(f"is narrowed to {100 * (high - low):.0f} % of its width")
     return f"{modification.patch} {' and '.join(done)} {modification.reason}".strip() if done else ""
+
+
+def _is_narrowed(modification: Modification) -> bool:
+    low, high = modification.window
+    return not modification.is_deleted and high - low < 1 - WINDOW
+
+
+def _differences(first: FoldSolution, other: FoldSolution) -> list[str]:
+    """What is done to a patch in the other solution and not in the first."""
+    done = {modification.patch: _done(modification) for modification in first.modifications}
+    changed = [(m.patch, _done(m)) for m in other.modifications if done.get(m.patch) != _done(m)]
+    return [f"{patch} {how}" for patch, how in changed] or ["the same in another order"]
+
+
+def _done(modification: Modification) -> str:
+    """`in-place, left, 1 hinge, 20 % to 100 %`: all that tells a modification from others of its patch."""
+    low, high = modification.window
+    hinges = [_count(modification.hinges, "hinge")] if modification.hinges else []
+    window = [f"{100 * low:.3g} % to {100 * high:.3g} %"] if _is_narrowed(modification) else []
+    return ", ".join([_fold(modification), *hinges, *window])
+
+
+def _fold(modification: Modification) -> str:
+    side = {"l": ", left", "r": ", right", None: ""}[modification.side]
+    return modification.mechanism + side
 
 
 def sizes(assembly: Assembly) -> tuple[Array, Array]:
@@ -190,12 +239,11 @@ def _modification(modification: Modification) -> dict[str, Any]:
 
 def _cells(modification: Modification) -> tuple[str, ...]:
     low, high = modification.window
-    side = {"l": ", left", "r": ", right", None: ""}[modification.side]
     kept = f"{100 * (high - low):.0f} %"
     cost = f"{modification.cost:.4f}"
     return (
         modification.patch,
-        modification.mechanism + side,
+        _fold(modification),
         str(modification.hinges),
         kept,
         cost,

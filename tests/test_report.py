@@ -142,5 +142,30 @@ def test_how_good_a_cost_is(cost: float, bound: float, gap: float, text: str) ->
     assert text in report.summary(replace(assembly(), solution=found), Path("x"))
 
 
+def test_alternatives() -> None:
+    first = solution()
+    turned = replace(SPLIT, hinges=3, side="l", window=(0.0, 1.0))
+    back = replace(STILL, mechanism="in-place", hinges=1, window=(0.2, 0.6))
+    others = (
+        replace(first, modifications=(back, GONE, turned), cost=0.2),
+        replace(first, modifications=(GONE, replace(GONE, patch="seat"), STILL), lower_bound=0.15),
+        replace(first, steps=(step(0, "back"), step(1, "seat", "bar"))),
+    )
+    lines = report.alternatives_table((first, *others), 12.3).splitlines()
+    assert lines[0] == "chair along -x: 4 folds, cost 0.1500, no less than 0.1000 (gap 33.3 %), solved in 12 ms"
+    assert [" ".join(line.split()) for line in lines[2:]] == [
+        "rank cost no less than hinges narrowed order otherwise than the first",
+        "1 0.1500 0.1000 1 1 seat, back",
+        "2 0.2000 0.1000 4 1 seat, back back in-place, left, 1 hinge, 20 % to 60 %; seat in-place, left, 3 hinges",
+        "3 0.1500 0.1500 0 0 seat, back seat deleted",
+        "4 0.1500 0.1000 1 1 back, seat the same in another order",
+    ]
+
+
+def test_facts_of_alternatives_are_json() -> None:
+    facts = json.loads(json.dumps(report.alternatives_facts((solution(), solution()), 2.0), allow_nan=False))
+    assert facts == {"status": "folded", "alternatives": [report.fold_facts(solution(), 2.0)] * 2}
+
+
 def test_facts_of_a_refusal() -> None:
     assert report.refused_facts("no base") == {"status": "refused", "reason": "no base"}

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from foldfab.recipe.model import Recipe
 
+MOST_ALTERNATIVES = 20
 USAGE, BUG, INTERRUPTED, UNHEARD = 2, 70, 130, 141
 
 _OPTIONS: tuple[tuple[str, str, str], ...] = (
@@ -30,8 +31,12 @@ _OPTIONS: tuple[tuple[str, str, str], ...] = (
     ("--alpha", "A", "weight of inserted hinges (1) against shrinking (0)"),
     ("--max-hinges", "N", "most hinges that may be inserted in one patch, 1 to 9"),
     ("--shrink-steps", "N", "how many pieces a patch is cut into for shrinking, 1 to 20"),
+    ("--ordering", "O", "greedy, as in the paper, or optimal: modifications and order chosen in one shot"),
+    ("--collisions", "C", "swept: shapes that meet in time; or regions: the paper's own test"),
+    ("--time-limit", "SECONDS", "of work on an ordinary machine, up to 3600"),
 )
-_SWITCHES = ("slanting", "stay_in_box")
+_SWITCHES = ("slanting", "stay_in_box", "symmetry")
+_REPEATED = (("--rigid", "NAME", "a part that must not get a hinge in its middle; may be given again for others"),)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -100,9 +105,10 @@ def _fold(arguments: argparse.Namespace) -> int:
 
     progress("looking for the cheapest fold")
     pipeline.prepare()
+    count = arguments.alternatives
     start = time.perf_counter()
     try:
-        solution = pipeline.foldabilize(recipe)
+        solutions = pipeline.alternatives(recipe, count) if count else (pipeline.foldabilize(recipe),)
     except FoldfabError as error:
         if arguments.json and error.exit_status == 1:
             _print_json(report.refused_facts(str(error)))
@@ -111,9 +117,12 @@ def _fold(arguments: argparse.Namespace) -> int:
     milliseconds = 1000 * (time.perf_counter() - start)
     progress.done()
     if arguments.json:
-        _print_json(report.fold_facts(solution, milliseconds))
+        ranked = report.alternatives_facts(solutions, milliseconds) if count else None
+        _print_json(ranked or report.fold_facts(solutions[0], milliseconds))
+    elif count:
+        print(report.alternatives_table(solutions, milliseconds))
     else:
-        print(report.fold_table(solution, milliseconds))
+        print(report.fold_table(solutions[0], milliseconds))
     return 0
 
 
@@ -191,6 +200,8 @@ def _parser() -> argparse.ArgumentParser:
     making.add_argument("-o", "--output", metavar="DIR", default="prints", help="where its folder goes (prints)")
     folding = _command(commands, "fold", _fold, "only say what would be changed, in which order, at which cost")
     folding.add_argument("--json", action="store_true", help="print the facts as JSON")
+    how_many = f"show the best K folds, 1 to {MOST_ALTERNATIVES}, and how they differ"
+    folding.add_argument("--alternatives", metavar="K", type=_how_many, help=how_many)
     for command, quiet in ((making, "show no progress and no summary"), (folding, "show no progress")):
         command.add_argument("recipe", metavar="RECIPE", help="a .json file, or the name of a shipped recipe")
         command.add_argument("-q", "--quiet", action="store_true", help=quiet)
@@ -224,8 +235,17 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("options that replace the recipe's")
     for option, metavar, text in _OPTIONS:
         group.add_argument(option, metavar=metavar, help=text)
+    for option, metavar, text in _REPEATED:
+        group.add_argument(option, metavar=metavar, action="append", help=text)
     group.add_argument("--no-slanting", dest="slanting", action="store_false", default=None, help="fold in place only")
     group.add_argument("--stay-in-box", action="store_true", default=None, help="stay within the bounding box")
+    group.add_argument("--symmetry", action="store_true", default=None, help="treat mirrored parts alike")
+
+
+def _how_many(text: str) -> int:
+    if text not in map(str, range(1, MOST_ALTERNATIVES + 1)):
+        raise argparse.ArgumentTypeError(f"should be a whole number from 1 to {MOST_ALTERNATIVES}, not {text!r}")
+    return int(text)
 
 
 class _Version(argparse.Action):
@@ -243,7 +263,7 @@ class _Version(argparse.Action):
 
 def _joined(argv: Sequence[str]) -> list[str]:
     """Values that begin with a minus are tied to their option; argparse would take `-z` for an option of its own."""
-    valued = {option for option, _, _ in _OPTIONS}
+    valued = {option for option, _, _ in (*_OPTIONS, *_REPEATED)}
     arguments, left = list[str](), iter(argv)
     for argument in left:
         value = next(left, None) if argument in valued else None
@@ -252,7 +272,7 @@ def _joined(argv: Sequence[str]) -> list[str]:
 
 
 def _option_names() -> tuple[str, ...]:
-    return tuple(option[2:].replace("-", "_") for option, _, _ in _OPTIONS)
+    return tuple(option[2:].replace("-", "_") for option, _, _ in (*_OPTIONS, *_REPEATED))
 
 
 def _print_json(facts: dict[str, Any]) -> None:

@@ -97,6 +97,20 @@ def foldabilize(recipe: Recipe) -> FoldSolution:
     return min(found, key=lambda f: f[:3])[3]
 
 
+def alternatives(recipe: Recipe, count: int) -> tuple[FoldSolution, ...]:
+    """The best `count` folding solutions, or as many as there are, best first: of one direction at one scale.
+
+    Raises:
+        AbstractionError, FoldingError: as for `foldabilize`.
+    """
+    from foldfab.folding.solve import alternatives as ranked  # type: ignore[attr-defined,unused-ignore]
+
+    best = foldabilize(recipe).scaffold
+    # Not `best` itself, which may be disconnected where parts must not be split.
+    found: tuple[FoldSolution, ...] = ranked(_abstracted(recipe, best.direction, best.scale), count)
+    return found
+
+
 def fabricate(solution: FoldSolution, *, posture: Posture | None = None, progress: Progress | None = None) -> Assembly:
     """The printed bodies of a solution, inspected.
 

@@ -14,9 +14,12 @@ from foldfab.geometry.arrays import Array
 
 WINDOW = 1e-9
 """How far a window may be from [0, 1] and still be the whole width."""
+PROVEN = 1e-9
+"""A cost that is no further above its bound is the least there is."""
 LAYERS = 20
 """A panel is printed in at least that many layers."""
 COLUMNS = ("step", "part", "fold", "hinges", "width kept", "cost", "why")
+ALTERNATIVES = ("rank", "cost", "no less than", "hinges", "narrowed", "order", "otherwise than the first")
 
 
 def summary(assembly: Assembly, folder: Path) -> str:
@@ -36,8 +39,8 @@ def fold_table(solution: FoldSolution, milliseconds: float) -> str:
     scaffold = solution.scaffold
     total = (
         f"{scaffold.recipe.name} folds along {_vector(scaffold.direction)}: {_count(len(solution.steps), 'unit')}, "
-        f"{_count(len(scaffold.patches), 'foldable patch')}, cost {solution.cost:.4f} "
-        f"(no less than {solution.lower_bound:.4f}), solved in {milliseconds:.0f} ms"
+        f"{_count(len(scaffold.patches), 'foldable patch')}, cost {cost_and_gap(solution)}, "
+        f"ordering {scaffold.recipe.fold.ordering}, solved in {milliseconds:.0f} ms"
     )
     return "\n".join([total, "", *_aligned(rows), *_notes(solution)])
 
@@ -52,8 +55,11 @@ def fold_facts(solution: FoldSolution, milliseconds: float) -> dict[str, Any]:
         "scale": float(solution.scaffold.scale),
         "units": len(solution.steps),
         "foldable_patches": len(solution.scaffold.patches),
+        "ordering": solution.scaffold.recipe.fold.ordering,
         "cost": float(solution.cost),
         "lower_bound": float(solution.lower_bound),
+        "gap": gap(solution),
+        "proven": is_proven(solution),
         "milliseconds": round(milliseconds, 3),
         "order": [{"unit": step.unit, "patches": list(step.patches)} for step in solution.steps],
         "modifications": [_modification(modification) for modification in solution.modifications],
@@ -61,9 +67,49 @@ def fold_facts(solution: FoldSolution, milliseconds: float) -> dict[str, Any]:
     }
 
 
+def alternatives_table(solutions: Sequence[FoldSolution], milliseconds: float) -> str:
+    """One row for each solution, cheapest first, with what it does otherwise than the first."""
+    first = solutions[0]
+    rows = [ALTERNATIVES]
+    for rank, solution in enumerate(solutions, 1):
+        kept = [modification for modification in solution.modifications if not modification.is_deleted]
+        hinges, narrowed = sum(m.hinges for m in kept), sum(_is_narrowed(m) for m in kept)
+        order = ", ".join(step.unit for step in solution.steps)
+        cells = (f"{solution.cost:.4f}", f"{solution.lower_bound:.4f}", str(hinges), str(narrowed), order)
+        rows.append((str(rank), *cells, "; ".join(_differences(first, solution)) if rank > 1 else ""))
+    scaffold = first.scaffold
+    total = (
+        f"{scaffold.recipe.name} along {_vector(scaffold.direction)}: {_count(len(solutions), 'fold')}, "
+        f"cost {cost_and_gap(first)}, solved in {milliseconds:.0f} ms"
+    )
+    return "\n".join([total, "", *_aligned(rows)])
+
+
+def alternatives_facts(solutions: Sequence[FoldSolution], milliseconds: float) -> dict[str, Any]:
+    """The same as JSON data; each says how long all of them took together."""
+    return {"status": "folded", "alternatives": [fold_facts(solution, milliseconds) for solution in solutions]}
+
+
 def refused_facts(reason: str) -> dict[str, Any]:
     """The JSON data of furniture that cannot be folded."""
     return {"status": "refused", "reason": reason}
+
+
+def is_proven(solution: FoldSolution) -> bool:
+    """Whether no solution over the same options is cheaper."""
+    return solution.cost - solution.lower_bound < PROVEN
+
+
+def gap(solution: FoldSolution) -> float:
+    """The share of its cost that a better solution could save at most; 0 where it is proven."""
+    return 0.0 if is_proven(solution) else float((solution.cost - solution.lower_bound) / solution.cost)
+
+
+def cost_and_gap(solution: FoldSolution) -> str:
+    """What it costs, and how much less would do at best."""
+    if is_proven(solution):
+        return f"{solution.cost:.4f}, proven least"
+    return f"{solution.cost:.4f}, no less than {solution.lower_bound:.4f} (gap {100 * gap(solution):.1f} %)"
 
 
 def change(modification: Modification) -> str:
@@ -75,9 +121,34 @@ def change(modification: Modification) -> str:
     else:
         if modification.hinges:
             done.append(f"gets {_count(modification.hinges, 'hinge')}")
-        if high - low < 1 - WINDOW:
+        if _is_narrowed(modification):
             done.append(f"is narrowed to {100 * (high - low):.0f} % of its width")
     return f"{modification.patch} {' and '.join(done)} {modification.reason}".strip() if done else ""
+
+
+def _is_narrowed(modification: Modification) -> bool:
+    low, high = modification.window
+    return not modification.is_deleted and high - low < 1 - WINDOW
+
+
+def _differences(first: FoldSolution, other: FoldSolution) -> list[str]:
+    """What is done to a patch in the other solution and not in the first."""
+    done = {modification.patch: _done(modification) for modification in first.modifications}
+    changed = [(m.patch, _done(m)) for m in other.modifications if done.get(m.patch) != _done(m)]
+    return [f"{patch} {how}" for patch, how in changed] or ["the same in another order"]
+
+
+def _done(modification: Modification) -> str:
+    """`in-place, left, 1 hinge, 20 % to 100 %`: all that tells a modification from others of its patch."""
+    low, high = modification.window
+    hinges = [_count(modification.hinges, "hinge")] if modification.hinges else []
+    window = [f"{100 * low:.3g} % to {100 * high:.3g} %"] if _is_narrowed(modification) else []
+    return ", ".join([_fold(modification), *hinges, *window])
+
+
+def _fold(modification: Modification) -> str:
+    side = {"l": ", left", "r": ", right", None: ""}[modification.side]
+    return modification.mechanism + side
 
 
 def sizes(assembly: Assembly) -> tuple[Array, Array]:
@@ -118,7 +189,7 @@ def _figures(assembly: Assembly) -> str:
         ("hinges", f"{inserted} inserted, {len(assembly.joints) - inserted} at bases"),
         ("printed bodies", str(len(assembly.bodies))),
         ("scale", f"1:{1 / scale:.3g}" if scale <= 1 else f"{scale:.3g}:1"),
-        ("cost", f"{assembly.solution.cost:.4f}, no less than {assembly.solution.lower_bound:.4f}"),
+        ("cost", cost_and_gap(assembly.solution)),
     ]
     return "\n".join(["What it is", *(f"  {line}" for line in _aligned(rows))])
 
@@ -168,12 +239,11 @@ def _modification(modification: Modification) -> dict[str, Any]:
 
 def _cells(modification: Modification) -> tuple[str, ...]:
     low, high = modification.window
-    side = {"l": ", left", "r": ", right", None: ""}[modification.side]
     kept = f"{100 * (high - low):.0f} %"
     cost = f"{modification.cost:.4f}"
     return (
         modification.patch,
-        modification.mechanism + side,
+        _fold(modification),
         str(modification.hinges),
         kept,
         cost,

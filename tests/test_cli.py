@@ -29,7 +29,7 @@ class Pipeline(types.ModuleType):
         self.fails: dict[str, BaseException] = {}
         self.findings: tuple[Finding, ...] = ()
         self.rows: tuple[Any, ...] = ()
-        for name in ("load", "foldabilize", "fabricate", "write", "check", "shipped", "compose", "save"):
+        for name in ("load", "foldabilize", "alternatives", "fabricate", "write", "check", "shipped", "compose", "save"):
             setattr(self, name, self._verb(name))
         self.prepare = lambda: None
 
@@ -45,6 +45,7 @@ class Pipeline(types.ModuleType):
     def _result(self, name: str) -> Any:
         return {
             "load": types.SimpleNamespace(name="bench", about="A bench."),
+            "alternatives": ("one", "two"),
             "fabricate": types.SimpleNamespace(findings=self.findings),
             "check": types.SimpleNamespace(rows=self.rows, ok=all(row.ok for row in self.rows)),
             "shipped": (Path("bench.json"),),
@@ -65,6 +66,8 @@ def pipeline(monkeypatch: pytest.MonkeyPatch) -> Pipeline:
     monkeypatch.setattr(report, "summary", lambda assembly, folder: f"summary of {folder}")
     monkeypatch.setattr(report, "fold_table", lambda solution, milliseconds: "table")
     monkeypatch.setattr(report, "fold_facts", lambda solution, milliseconds: {"status": "folded"})
+    monkeypatch.setattr(report, "alternatives_table", lambda solutions, milliseconds: f"table of {len(solutions)}")
+    monkeypatch.setattr(report, "alternatives_facts", lambda solutions, milliseconds: {"alternatives": list(solutions)})
     return fake
 
 
@@ -93,7 +96,8 @@ def test_only_given_options_override(pipeline: Pipeline) -> None:
 def test_all_options(pipeline: Pipeline) -> None:
     line = "fold bench --direction -z --posture folded --printer ender-3 --scale 1:5 --clearance 0.2 --thickness 3"
     more = "--alpha 0.1 --max-hinges 5 --shrink-steps 4 --no-slanting --stay-in-box"
-    assert cli.main([*line.split(), *more.split()]) == 0
+    last = "--ordering optimal --collisions regions --symmetry --time-limit 30 --rigid seat --rigid -back"
+    assert cli.main([*line.split(), *more.split(), *last.split()]) == 0
     assert pipeline.calls[0][2] == {
         "direction": "-z",
         "posture": "folded",
@@ -106,6 +110,11 @@ def test_all_options(pipeline: Pipeline) -> None:
         "shrink_steps": "4",
         "slanting": False,
         "stay_in_box": True,
+        "ordering": "optimal",
+        "collisions": "regions",
+        "symmetry": True,
+        "time_limit": "30",
+        "rigid": ["seat", "-back"],
     }
 
 
@@ -137,6 +146,25 @@ def test_refused(pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None
     assert capsys.readouterr() == ("", "foldfab: seat cannot fold\n")
     assert cli.main(["fold", "bench", "--json"]) == 1
     assert json.loads(capsys.readouterr().out) == {"status": "refused", "reason": "seat cannot fold"}
+
+
+def test_alternatives(pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["fold", "bench", "--alternatives", "20"]) == 0
+    assert pipeline.names() == ["load", "alternatives"]
+    assert pipeline.calls[1][1][1] == 20
+    assert capsys.readouterr().out == "table of 2\n"
+    assert cli.main(["fold", "bench", "--alternatives", "1", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == {"alternatives": ["one", "two"]}
+    pipeline.fails["alternatives"] = FoldingError("seat cannot fold")
+    assert cli.main(["fold", "bench", "--alternatives", "2", "--json"]) == 1
+    assert json.loads(capsys.readouterr().out) == {"status": "refused", "reason": "seat cannot fold"}
+
+
+@pytest.mark.parametrize("count", ["0", "21", "-1", "2.5", "many", "", "²"])
+def test_how_many_alternatives(count: str, pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["fold", "bench", f"--alternatives={count}"]) == 2
+    assert f"should be a whole number from 1 to 20, not {count!r}" in capsys.readouterr().err
+    assert pipeline.names() == []
 
 
 @pytest.mark.parametrize("command", [["print", "bench"], ["fold", "bench"], ["fold", "bench", "--json"]])

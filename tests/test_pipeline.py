@@ -14,6 +14,9 @@ from foldfab import cli, pipeline
 from foldfab.errors import AbstractionError, FabricationError, FoldingError
 from foldfab.fabrication.inspect import printed_extent
 from foldfab.fabrication.model import Assembly
+from foldfab.folding import solve
+from foldfab.folding.model import FoldSolution
+from foldfab.scaffold.model import Scaffold
 
 SMALL = ("bench-legs", "table-slanted")
 """Two shipped recipes that print quickly."""
@@ -65,6 +68,22 @@ def test_auto_takes_the_cheapest_direction(tmp_path: Path) -> None:
             continue
     assert found.cost == pytest.approx(min(costs))
     assert np.abs(found.scaffold.direction).max() == 1.0
+
+
+def test_alternatives_share_direction_and_scale(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[tuple[Scaffold, int]] = []
+
+    def ranked(scaffold: Scaffold, count: int) -> tuple[FoldSolution, ...]:
+        seen.append((scaffold, count))
+        return (solve.solve(scaffold),)
+
+    monkeypatch.setattr(solve, "alternatives", ranked, raising=False)
+    recipe = loaded(tmp_path, direction="auto")
+    best, (found,) = foldfab.foldabilize(recipe), pipeline.alternatives(recipe, 3)
+    (scaffold, count) = seen[0]
+    assert count == 3
+    assert (scaffold.scale, scaffold.direction.tolist()) == (best.scaffold.scale, best.scaffold.direction.tolist())
+    assert (found.cost, found.modifications) == (best.cost, best.modifications)
 
 
 def test_auto_says_why_nothing_folds(tmp_path: Path) -> None:

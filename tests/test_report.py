@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -105,7 +106,10 @@ def test_summary_of_a_folded_print() -> None:
 
 def test_table_is_in_folding_order() -> None:
     lines = report.fold_table(solution(), 12.3).splitlines()
-    assert lines[0].startswith("chair folds along -x: 2 units, 3 foldable patches, cost 0.1500 (no less than 0.1000)")
+    assert lines[0] == (
+        "chair folds along -x: 2 units, 3 foldable patches, cost 0.1500, no less than 0.1000 (gap 33.3 %), "
+        "ordering greedy, solved in 12 ms"
+    )
     assert [line.split()[:2] for line in lines[3:6]] == [["1", "seat"], ["1", "bar"], ["2", "back"]]
     assert lines[-1] == "note: a note"
 
@@ -115,6 +119,52 @@ def test_facts_are_json() -> None:
     assert (facts["status"], facts["units"], facts["foldable_patches"]) == ("folded", 2, 3)
     assert (facts["cost"], facts["lower_bound"], facts["milliseconds"]) == (0.15, 0.1, 12.346)
     assert facts["modifications"][1]["patch"] == "bar"
+    assert (facts["ordering"], facts["gap"], facts["proven"]) == ("greedy", pytest.approx(1 / 3), False)
+
+
+@pytest.mark.parametrize(
+    ("cost", "bound", "gap", "text"),
+    [
+        (0.2103, 0.19, 0.09653, "0.2103, no less than 0.1900 (gap 9.7 %)"),
+        (0.2, 0.0, 1.0, "0.2000, no less than 0.0000 (gap 100.0 %)"),
+        (1 / 6, 1 / 6, 0, "0.1667, proven least"),
+        (1 / 6, 1 / 6 - 1e-10, 0, "0.1667, proven least"),
+        (0.1, 0.1 + 1e-12, 0, "0.1000, proven least"),
+        (0.0, 0.0, 0, "0.0000, proven least"),
+    ],
+)
+def test_how_good_a_cost_is(cost: float, bound: float, gap: float, text: str) -> None:
+    found = replace(solution(), cost=cost, lower_bound=bound)
+    assert report.cost_and_gap(found) == text
+    assert report.gap(found) == pytest.approx(gap, abs=1e-4)
+    assert f", cost {text}, " in report.fold_table(found, 1)
+    assert report.fold_facts(found, 1)["proven"] == (gap == 0)
+    assert text in report.summary(replace(assembly(), solution=found), Path("x"))
+
+
+def test_alternatives() -> None:
+    first = solution()
+    turned = replace(SPLIT, hinges=3, side="l", window=(0.0, 1.0))
+    back = replace(STILL, mechanism="in-place", hinges=1, window=(0.2, 0.6))
+    others = (
+        replace(first, modifications=(back, GONE, turned), cost=0.2),
+        replace(first, modifications=(GONE, replace(GONE, patch="seat"), STILL), lower_bound=0.15),
+        replace(first, steps=(step(0, "back"), step(1, "seat", "bar"))),
+    )
+    lines = report.alternatives_table((first, *others), 12.3).splitlines()
+    assert lines[0] == "chair along -x: 4 folds, cost 0.1500, no less than 0.1000 (gap 33.3 %), solved in 12 ms"
+    assert [" ".join(line.split()) for line in lines[2:]] == [
+        "rank cost no less than hinges narrowed order otherwise than the first",
+        "1 0.1500 0.1000 1 1 seat, back",
+        "2 0.2000 0.1000 4 1 seat, back back in-place, left, 1 hinge, 20 % to 60 %; seat in-place, left, 3 hinges",
+        "3 0.1500 0.1500 0 0 seat, back seat deleted",
+        "4 0.1500 0.1000 1 1 back, seat the same in another order",
+    ]
+
+
+def test_facts_of_alternatives_are_json() -> None:
+    facts = json.loads(json.dumps(report.alternatives_facts((solution(), solution()), 2.0), allow_nan=False))
+    assert facts == {"status": "folded", "alternatives": [report.fold_facts(solution(), 2.0)] * 2}
 
 
 def test_facts_of_a_refusal() -> None:

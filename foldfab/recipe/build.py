@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from foldfab.geometry.arrays import Array
-from foldfab.recipe.form import MILLIMETRES, FoldForm, PartForm, PrinterForm, PrintForm, RecipeForm
-from foldfab.recipe.model import FoldOptions, Part, Printer, PrintOptions, Recipe
+from foldfab.recipe.form import MILLIMETRES, FoldForm, PartForm, PatternForm, PrinterForm, PrintForm, RecipeForm
+from foldfab.recipe.model import FoldOptions, Part, Pattern, Printer, PrintOptions, Recipe
+from foldfab.recipe.patterns import snapped
 from foldfab.recipe.printers import PRINTERS
 
 _EXACT = 1e-12
@@ -20,7 +23,7 @@ def build(form: RecipeForm, name: str, source: str) -> Recipe:
     return Recipe(
         name=name,
         direction=unit_direction(form.direction),
-        parts=tuple(_part(part, factor) for part in form.parts),
+        parts=tuple(_part(part, factor, form.fold.shrink_steps) for part in form.parts),
         fold=_fold(form.fold),
         print=_print(form.print),
         about=form.about,
@@ -57,14 +60,22 @@ def _is_extreme(vector: list[float]) -> bool:
     return not 1e-100 < max(abs(entry) for entry in vector) < 1e100
 
 
-def _part(form: PartForm, factor: float) -> Part:
+def _part(form: PartForm, factor: float, steps: int) -> Part:
     return Part(
         name=form.name,
         center=np.array(form.box.center) * factor,
         size=np.array(form.box.size) * factor,
         axes=np.eye(3) if form.box.axes is None else rotation(form.box.axes),
         hingeable=form.hingeable,
+        pin=None if form.pin is None else _pattern(form.pin, steps),
+        forbid=tuple(_pattern(pattern, steps) for pattern in form.forbid),
     )
+
+
+def _pattern(form: PatternForm, steps: int) -> Pattern:
+    """The pattern with its window exactly on the cuts."""
+    pattern = form.pattern
+    return pattern if pattern.window is None else replace(pattern, window=snapped(pattern.window, steps))
 
 
 def _fold(form: FoldForm) -> FoldOptions:
@@ -74,6 +85,10 @@ def _fold(form: FoldForm) -> FoldOptions:
         shrink_steps=form.shrink_steps,
         slanting=form.slanting,
         stay_in_box=form.stay_in_box,
+        ordering=form.ordering,
+        collisions=form.collisions,
+        symmetry=form.symmetry,
+        time_limit=float(form.time_limit),
     )
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection, Iterator
 from dataclasses import replace
+from difflib import get_close_matches
 from typing import Any
 
 from pydantic import ValidationError
@@ -11,11 +13,17 @@ from pydantic import ValidationError
 from foldfab.errors import Problem, RecipeError
 from foldfab.recipe.build import unit_direction
 from foldfab.recipe.form import Direction, FoldForm, Form, PrintForm
-from foldfab.recipe.model import Recipe
+from foldfab.recipe.model import Part, Pattern, Recipe
+from foldfab.recipe.names import same_name
+from foldfab.recipe.patterns import hinges_problem, rigid_problem, window_problem
 from foldfab.recipe.printers import printer as find_printer
-from foldfab.recipe.problems import problems_of
+from foldfab.recipe.problems import problems_of, shown
 
 SOURCE = "command line"
+_FLOATS = ("alpha", "time_limit")
+"""Options of the fold that are numbers but not counts."""
+_MOST_NAMES = 30
+"""More parts than these are counted, not listed."""
 
 
 class _DirectionForm(Form):
@@ -36,30 +44,38 @@ def override(
     shrink_steps: str | int | None = None,
     slanting: bool | None = None,
     stay_in_box: bool | None = None,
+    ordering: str | None = None,
+    collisions: str | None = None,
+    symmetry: bool | None = None,
+    time_limit: str | float | None = None,
+    rigid: Collection[str] = (),
 ) -> Recipe:
-    """`recipe` with every value replaced that is not None; numbers may come as text.
+    """`recipe` with every value replaced that is not None, and the parts named in `rigid` no longer hingeable.
 
-    A direction is an axis such as "-x", a vector such as "0,0,-1", or "auto"; a scale is "fit", a number, or a
-    ratio such as "1:5".
+    Numbers may come as text. A direction is an axis such as "-x", a vector such as "0,0,-1", or "auto"; a scale is
+    "fit", a number, or a ratio such as "1:5".
 
     Raises:
         RecipeError: every value that is not allowed, with the option's name as its place.
     """
-    fold = {"alpha": alpha, "max_hinges": max_hinges, "shrink_steps": shrink_steps}
-    fold_given = {**_given(fold), **_present({"slanting": slanting, "stay_in_box": stay_in_box})}
-    print_given = _given({"clearance": clearance, "thickness": thickness, "posture": posture, "scale": _ratio(scale)})
+    numbers = {"alpha": alpha, "max_hinges": max_hinges, "shrink_steps": shrink_steps, "time_limit": time_limit}
+    switches = {"slanting": slanting, "stay_in_box": stay_in_box, "symmetry": symmetry}
+    fold = _given({**numbers, **switches, "ordering": ordering, "collisions": collisions})
+    options = _given({"clearance": clearance, "thickness": thickness, "posture": posture, "scale": _ratio(scale)})
     way = {} if direction is None else {"direction": _vector(direction)}
-    problems = _check(_DirectionForm, way) + _check(FoldForm, fold_given) + _check(PrintForm, print_given)
-    problems += _check_printer(printer)
+    wrong = _check(FoldForm, fold)
+    problems = _check(_DirectionForm, way) + wrong + _check(PrintForm, options) + _check_printer(printer)
+    problems += _check_rigid(recipe, rigid) + _check_patterns(recipe, {} if wrong else fold, rigid)
     if problems:
         raise RecipeError(SOURCE, tuple(problems))
-    return _replaced(recipe, way, fold_given, print_given, printer)
+    parts = tuple(replace(part, hingeable=False) if part.name in rigid else part for part in recipe.parts)
+    return _replaced(replace(recipe, parts=parts), way, fold, options, printer)
 
 
 def _replaced(
     recipe: Recipe, way: dict[str, Any], fold: dict[str, Any], options: dict[str, Any], printer: str | None
 ) -> Recipe:
-    fold = {key: float(value) if key == "alpha" else value for key, value in fold.items()}
+    fold = {key: float(value) if key in _FLOATS else value for key, value in fold.items()}
     options = {key: float(value) if isinstance(value, int) else value for key, value in options.items()}
     if options.get("scale") == "fit":
         options["scale"] = None
@@ -73,12 +89,10 @@ def _replaced(
     )
 
 
-def _present(values: dict[str, Any]) -> dict[str, Any]:
-    return {key: value for key, value in values.items() if value is not None}
-
-
 def _given(values: dict[str, Any]) -> dict[str, Any]:
-    return {key: _number(value) if isinstance(value, str) else value for key, value in _present(values).items()}
+    """Without what is None, and with numbers for the texts that hold one."""
+    present = {key: value for key, value in values.items() if value is not None}
+    return {key: _number(value) if isinstance(value, str) else value for key, value in present.items()}
 
 
 def _number(text: str) -> int | float | str:
@@ -119,6 +133,46 @@ def _check_printer(text: str | None) -> list[Problem]:
     except ValueError as error:
         return [Problem("--printer", str(error))]
     return []
+
+
+def _check_rigid(recipe: Recipe, rigid: Collection[str]) -> list[Problem]:
+    names = [part.name for part in recipe.parts]
+    unknown = [_unknown_part(name, names) for name in dict.fromkeys(rigid) if name not in names]
+    if not unknown:
+        return []
+    rest = [f"and {len(names) - _MOST_NAMES} more"] if len(names) > _MOST_NAMES else []
+    known = ", ".join([*names[:_MOST_NAMES], *rest])
+    return [Problem("--rigid", f"no part is named {' or '.join(unknown)}; there are {known}")]
+
+
+def _check_patterns(recipe: Recipe, fold: dict[str, Any], rigid: Collection[str]) -> list[Problem]:
+    """A problem for each pinned or forbidden modification that an option has made impossible."""
+    found: list[tuple[str, str, str | None]] = []
+    for where, part, pattern in _patterns(recipe):
+        if pattern.window is not None:
+            text = window_problem(pattern.window, fold.get("shrink_steps"))
+            found.append(("--shrink-steps", f"{where}.window", text))
+        if pattern.hinges is not None:
+            found.append(("--max-hinges", f"{where}.hinges", hinges_problem(pattern.hinges, fold.get("max_hinges"))))
+        if part.name in rigid and pattern is part.pin:
+            found.append(("--rigid", where, rigid_problem(pattern)))
+    return [Problem(option, f"contradicts {where}: {text}") for option, where, text in found if text]
+
+
+def _patterns(recipe: Recipe) -> Iterator[tuple[str, Part, Pattern]]:
+    """All that is pinned or forbidden, with its place and part."""
+    for index, part in enumerate(recipe.parts):
+        if part.pin is not None:
+            yield f"parts[{index}].pin", part, part.pin
+        for number, pattern in enumerate(part.forbid):
+            yield f"parts[{index}].forbid[{number}]", part, pattern
+
+
+def _unknown_part(name: str, names: list[str]) -> str:
+    """The name, and those that may have been meant."""
+    keys = {same_name(known): known for known in names}
+    close = [keys[key] for key in get_close_matches(same_name(name), keys, n=3)]
+    return f"{shown(name)} (did you mean {' or '.join(close)}?)" if close else shown(name)
 
 
 def _option(place: str) -> str:

@@ -19,15 +19,20 @@ from pydantic import (
     Tag,
     ValidationInfo,
     WithJsonSchema,
+    model_validator,
 )
 from pydantic_core import PydanticCustomError
 
-from foldfab.recipe.model import FoldOptions, Posture, PrintOptions
+from foldfab.recipe.model import Collisions, FoldOptions, Mechanism, Ordering, Pattern, Posture, PrintOptions
+from foldfab.recipe.model import Side as FoldSide
 from foldfab.recipe.names import folder_name_problem, has_control_characters, part_name_problem
+from foldfab.recipe.patterns import hinges_problem, is_covered, pattern_problem, rigid_problem, window_problem
 from foldfab.recipe.printers import DEFAULT_PRINTER, LARGEST, PRINTERS, SMALLEST
 
 MOST_PARTS = 20_000
 """Enough for composites of 32 × 32 cells."""
+MOST_PATTERNS = 100
+"""Forbidden for one part."""
 FARTHEST = 1e6
 """mm; larger sizes and coordinates are a wrong unit."""
 SMALLEST_SIZE = 0.01
@@ -99,6 +104,16 @@ def _not_zero(vector: list[float]) -> list[float]:
     return vector
 
 
+def _on_cuts(window: list[float], info: ValidationInfo) -> list[float]:
+    _complain(window_problem(window, (info.context or {}).get("shrink_steps")))
+    return window
+
+
+def _allowed_hinges(hinges: int, info: ValidationInfo) -> int:
+    _complain(hinges_problem(hinges, (info.context or {}).get("max_hinges")))
+    return hinges
+
+
 def _known_printer(text: str) -> str:
     known = ", ".join(PRINTERS)
     own = '{"name": "mine", "build_volume": [200, 200, 180]}'
@@ -111,6 +126,9 @@ Length = Annotated[float, Field(gt=0), AfterValidator(_thick_enough), AfterValid
 Side = Annotated[float, Field(ge=SMALLEST, le=LARGEST)]
 Three = Field(min_length=3, max_length=3)
 Vector = Annotated[list[float], Three]
+Window = Annotated[
+    list[Annotated[float, Field(ge=0, le=1)]], Field(min_length=2, max_length=2), AfterValidator(_on_cuts)
+]
 AxisName = Literal["x", "+x", "-x", "y", "+y", "-y", "z", "+z", "-z", "auto"]
 Direction = Annotated[
     Annotated[AxisName, Tag("<axis>")] | Annotated[Vector, AfterValidator(_not_zero), Tag("<vector>")],
@@ -142,12 +160,57 @@ class BoxForm(Form):
     )
 
 
+class PatternForm(Form):
+    """What the modification of a part is like; what is left out may be anything."""
+
+    mechanism: Mechanism | None = Field(default=None, description="How it folds, or deleted where it is taken away.")
+    hinges: Annotated[int, Field(ge=0, le=9), AfterValidator(_allowed_hinges)] | None = Field(
+        default=None, description="Hinges inserted in its interior."
+    )
+    side: FoldSide | None = Field(default=None, description="To which side its lowest panel folds, left or right.")
+    window: Window | None = Field(
+        default=None, description="Where the share of the width that is kept begins and ends, in shrink_steps-ths."
+    )
+
+    @model_validator(mode="after")
+    def _is_possible(self) -> PatternForm:
+        _complain(pattern_problem(self.pattern))
+        return self
+
+    @property
+    def pattern(self) -> Pattern:
+        """The same as an item of the model."""
+        window = None if self.window is None else (float(self.window[0]), float(self.window[1]))
+        return Pattern(self.mechanism, self.hinges, self.side, window)
+
+
+def _pinnable(pin: PatternForm, info: ValidationInfo) -> PatternForm:
+    empty = "is empty, so it would pin nothing; give mechanism, hinges, side or window, or leave it out"
+    _complain(empty if pin.pattern == Pattern() else None)
+    _complain(None if info.data.get("hingeable", True) else rigid_problem(pin.pattern))
+    return pin
+
+
+def _forbiddable(form: PatternForm, info: ValidationInfo) -> PatternForm:
+    empty = "is empty, so it would forbid everything; give mechanism, hinges, side or window, or leave it out"
+    _complain(empty if form.pattern == Pattern() else None)
+    pin = info.data.get("pin")
+    _complain("forbids all that pin asks for" if pin and is_covered(pin.pattern, form.pattern) else None)
+    return form
+
+
 class PartForm(Form):
     """One segment of the furniture."""
 
     name: Annotated[str, AfterValidator(_part_name)] = Field(description="Unique in the recipe; becomes a file's name.")
     box: BoxForm
     hingeable: bool = Field(default=True, description="False where no hinge may be inserted in its interior.")
+    pin: Annotated[PatternForm, AfterValidator(_pinnable)] | None = Field(
+        default=None, description="What its modification has to be like."
+    )
+    forbid: list[Annotated[PatternForm, AfterValidator(_forbiddable)]] = Field(
+        default=[], max_length=MOST_PATTERNS, description="What its modification must not be like."
+    )
 
 
 class FoldForm(Form):
@@ -163,6 +226,22 @@ class FoldForm(Form):
     slanting: bool = Field(default=_FOLD.slanting, description="Whether two bases may shear past each other.")
     stay_in_box: bool = Field(
         default=_FOLD.stay_in_box, description="Whether the fold must stay within the furniture's bounding box."
+    )
+    ordering: Ordering = Field(
+        default=_FOLD.ordering, description="The paper's greedy order, or modifications and order chosen in one shot."
+    )
+    collisions: Collisions = Field(
+        default=_FOLD.collisions,
+        description="What rules options out: shapes that meet in time, or the paper's times and regions that overlap.",
+    )
+    symmetry: bool = Field(
+        default=_FOLD.symmetry, description="Whether parts that mirror each other are treated alike."
+    )
+    time_limit: float = Field(
+        default=_FOLD.time_limit,
+        gt=0,
+        le=3600,
+        description="Seconds of work on an ordinary machine, counted in work and not in wall time.",
     )
 
 

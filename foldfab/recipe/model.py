@@ -8,6 +8,36 @@ from typing import Literal
 from foldfab.geometry.arrays import Array, frozen
 
 Posture = Literal["open", "folded"]
+Ordering = Literal["greedy", "optimal"]
+Collisions = Literal["swept", "regions"]
+Mechanism = Literal["in-place", "slanted", "deleted"]
+Side = Literal["l", "r"]
+
+_SAME_EDGE = 1e-9
+"""Shares of the width that are closer than this are the same cutting point."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pattern:
+    """What a modification m = (N_h, s, a0, a1) of section 5.3 is like; None lets anything through."""
+
+    mechanism: Mechanism | None = None
+    hinges: int | None = None
+    """N_h, hinges inserted in its interior."""
+    side: Side | None = None
+    """To which side its lowest panel folds."""
+    window: tuple[float, float] | None = None
+    """[a0, a1], exactly the share of its width that is kept; [0, 1] where it is not shrunk."""
+
+    def fits(self, mechanism: Mechanism, hinges: int, side: Side | None, window: tuple[float, float]) -> bool:
+        """Whether a modification is like this. What is deleted has no hinges, side or window to speak of."""
+        if self.mechanism not in (None, mechanism):
+            return False
+        if mechanism == "deleted":
+            return (self.hinges, self.side, self.window) == (None, None, None)
+        edges = zip(self.window or window, window, strict=True)
+        is_same_window = all(abs(one - other) <= _SAME_EDGE for one, other in edges)
+        return self.hinges in (None, hinges) and self.side in (None, side) and is_same_window
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -24,11 +54,21 @@ class Part:
     """(3, 3) right-handed orthonormal rows."""
     hingeable: bool = True
     """False where no hinge may be inserted in its interior (section 5.7)."""
+    pin: Pattern | None = None
+    """What its modification has to be like; None where the search is free."""
+    forbid: tuple[Pattern, ...] = ()
+    """What its modification must not be like."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "center", frozen(self.center, 3))
         object.__setattr__(self, "size", frozen(self.size, 3))
         object.__setattr__(self, "axes", frozen(self.axes, 3, 3))
+
+    def allows(self, mechanism: Mechanism, hinges: int, side: Side | None, window: tuple[float, float]) -> bool:
+        """Whether a modification of its patches is like its pin and unlike all that is forbidden."""
+        asked = (mechanism, hinges, side, window)
+        is_pinned = self.pin is None or self.pin.fits(*asked)
+        return is_pinned and not any(pattern.fits(*asked) for pattern in self.forbid)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,6 +85,15 @@ class FoldOptions:
     """Whether H-scaffolds may fold slanted (T-scaffolds always may)."""
     stay_in_box: bool = False
     """Whether the fold must stay within the bounding box of the input."""
+    ordering: Ordering = "greedy"
+    """How units are ordered: greedily (section 5.5), or modifications and order chosen in one shot."""
+    collisions: Collisions = "swept"
+    """What makes two options conflict: shapes that meet in time, or the paper's folding times and regions that both
+    overlap (section 5.4)."""
+    symmetry: bool = False
+    """Whether parts that mirror each other are treated alike."""
+    time_limit: float = 2.0
+    """Seconds on an ordinary machine, counted in work done, so that the same input gives the same answer."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,12 +13,14 @@ from pydantic_core import ErrorDetails
 from foldfab.errors import Problem
 from foldfab.recipe.form import (
     MOST_PARTS,
+    MOST_PATTERNS,
     OWN_WORDS,
     TAGS,
     BoxForm,
     FoldForm,
     Form,
     PartForm,
+    PatternForm,
     PrinterForm,
     PrintForm,
     RecipeForm,
@@ -50,12 +52,24 @@ EXPECTED = MappingProxyType(
         "axes[]": "a row of three numbers",
         "axes[][]": "a finite number",
         "hingeable": "true or false",
+        "pin": 'an object such as {"mechanism": "in-place", "hinges": 1}',
+        "forbid": f'a list of at most {MOST_PATTERNS} patterns such as {{"mechanism": "slanted"}}',
+        "forbid[]": 'an object such as {"mechanism": "slanted"}',
+        "mechanism": 'one of "in-place", "slanted", "deleted"',
+        "hinges": "a whole number from 0 to 9",
+        "side": '"l" or "r"',
+        "window": "two shares of the width such as [0, 0.4]",
+        "window[]": "a share of the width from 0 to 1",
         "fold": 'an object such as {"alpha": 0.5}',
         "alpha": "a number from 0 to 1",
         "max_hinges": "a whole number from 1 to 9",
         "shrink_steps": "a whole number from 1 to 20",
         "slanting": "true or false",
         "stay_in_box": "true or false",
+        "ordering": '"greedy" or "optimal"',
+        "collisions": '"swept" or "regions"',
+        "symmetry": "true or false",
+        "time_limit": "a number of seconds above 0, at most 3600",
         "print": 'an object such as {"thickness": 4}',
         "printer": f'one of {", ".join(PRINTERS)}, or {{"name": "mine", "build_volume": [200, 200, 180]}}',
         "build_volume": "three lengths in mm",
@@ -69,7 +83,16 @@ EXPECTED = MappingProxyType(
 """By field, with a [] for each level of its lists: what would be right."""
 
 FORMS: Mapping[str, type[Form]] = MappingProxyType(
-    {"": RecipeForm, "parts[]": PartForm, "box": BoxForm, "fold": FoldForm, "print": PrintForm, "printer": PrinterForm}
+    {
+        "": RecipeForm,
+        "parts[]": PartForm,
+        "box": BoxForm,
+        "pin": PatternForm,
+        "forbid[]": PatternForm,
+        "fold": FoldForm,
+        "print": PrintForm,
+        "printer": PrinterForm,
+    }
 )
 """By field: the form of the object that it holds."""
 
@@ -158,12 +181,12 @@ def _unknown_key(key: str, parent: str) -> str:
     if (parent, key) in _NOT_YET:
         return _NOT_YET[parent, key]
     known = keys(FORMS[parent])
-    close = get_close_matches(key.lower(), known, n=1)
-    if close:
-        return f'is not known here; did you mean "{close[0]}"?'
     home = next((other for other, form in FORMS.items() if key in keys(form)), None)
     if home is not None:
         return f"is not known here; it belongs in {home or 'the top level'}"
+    close = get_close_matches(key.lower(), known, n=1)
+    if close:
+        return f'is not known here; did you mean "{close[0]}"?'
     return f"is not known here; known are {', '.join(known)}"
 
 

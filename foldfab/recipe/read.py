@@ -9,7 +9,7 @@ from pydantic import ValidationError
 from foldfab.errors import Problem, RecipeError
 from foldfab.recipe.build import build
 from foldfab.recipe.document import load, repeated_keys
-from foldfab.recipe.form import MILLIMETRES, RecipeForm
+from foldfab.recipe.form import MILLIMETRES, FoldForm, RecipeForm
 from foldfab.recipe.model import Recipe
 from foldfab.recipe.names import folder_name, folder_name_problem, same_name
 from foldfab.recipe.problems import EXPECTED, TOP, problems_of, shown
@@ -46,9 +46,21 @@ def _form(data: dict[str, object]) -> tuple[RecipeForm | None, list[Problem]]:
     units = data.get("units", "mm")
     factor = MILLIMETRES.get(units, 1.0) if isinstance(units, str) else 1.0
     try:
-        return RecipeForm.model_validate(data, context={"factor": factor}), []
+        return RecipeForm.model_validate(data, context={"factor": factor, **_limits(data.get("fold"))}), []
     except ValidationError as error:
         return None, problems_of(error)
+
+
+def _limits(fold: object) -> dict[str, int]:
+    """What patterns are judged by, as far as the recipe says it well."""
+    given = fold if isinstance(fold, dict) else {}
+    limits = {}
+    for name in ("shrink_steps", "max_hinges"):
+        try:
+            limits[name] = getattr(FoldForm.model_validate({name: given[name]} if name in given else {}), name)
+        except ValidationError:
+            continue
+    return limits
 
 
 def _repeated_names(parts: object) -> list[Problem]:

@@ -6,7 +6,7 @@ import json
 from typing import Any
 
 from foldfab.geometry.arrays import Array
-from foldfab.recipe.model import Part, PrintOptions, Recipe
+from foldfab.recipe.model import Part, Pattern, PrintOptions, Recipe
 
 
 def to_json(recipe: Recipe) -> dict[str, Any]:
@@ -23,6 +23,10 @@ def to_json(recipe: Recipe) -> dict[str, Any]:
             "shrink_steps": recipe.fold.shrink_steps,
             "slanting": recipe.fold.slanting,
             "stay_in_box": recipe.fold.stay_in_box,
+            "ordering": recipe.fold.ordering,
+            "collisions": recipe.fold.collisions,
+            "symmetry": recipe.fold.symmetry,
+            "time_limit": recipe.fold.time_limit,
         },
         "print": _print(recipe.print),
     }
@@ -49,7 +53,19 @@ def _line(value: object) -> str:
 
 def _part(part: Part) -> dict[str, Any]:
     box = {"center": _floats(part.center), "size": _floats(part.size), "axes": [_floats(row) for row in part.axes]}
-    return {"name": part.name, "box": box, "hingeable": part.hingeable}
+    written = {"name": part.name, "box": box, "hingeable": part.hingeable}
+    if part.pin is not None:
+        written["pin"] = _pattern(part.pin)
+    if part.forbid:
+        written["forbid"] = [_pattern(pattern) for pattern in part.forbid]
+    return written
+
+
+def _pattern(pattern: Pattern) -> dict[str, Any]:
+    """Only what it asks for."""
+    window = None if pattern.window is None else list(pattern.window)
+    asked = {"mechanism": pattern.mechanism, "hinges": pattern.hinges, "side": pattern.side, "window": window}
+    return {key: value for key, value in asked.items() if value is not None}
 
 
 def _print(options: PrintOptions) -> dict[str, Any]:

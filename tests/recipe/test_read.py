@@ -13,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from foldfab.errors import RecipeError
+from foldfab.recipe.model import Pattern
 from foldfab.recipe.read import MOST_PROBLEMS, parse, read
 
 STOOL: dict[str, Any] = {
@@ -42,7 +43,7 @@ def problems(data: object, default_name: str = "stool") -> dict[str, str]:
     return {problem.place: problem.text for problem in caught.value.problems}
 
 
-BOX = ("parts", 0, "box")
+BOX, PIN, FORBID = ("parts", 0, "box"), ("parts", 0, "pin"), ("parts", 0, "forbid")
 BROKEN = [
     ([], "recipe", "object"),
     ("text", "recipe", "object"),
@@ -71,6 +72,36 @@ BROKEN = [
     (changed("parts", 0, "hingeable", "no"), "parts[0].hingeable", "true or false"),
     (changed("parts", 0, "hingable", False), "parts[0].hingable", 'did you mean "hingeable"'),
     (changed("parts", 0, "size", [1, 2, 3]), "parts[0].size", "belongs in box"),
+    (changed("pin", {"hinges": 1}), "pin", "belongs in parts[]"),
+    (changed("parts", 0, "hinges", 1), "parts[0].hinges", "belongs in pin"),
+    (changed(*BOX, "forbid", []), "parts[0].box.forbid", "belongs in parts[]"),
+    (changed(*PIN, []), "parts[0].pin", 'an object such as {"mechanism"'),
+    (changed(*PIN, {}), "parts[0].pin", "empty, so it would pin nothing"),
+    (changed(*PIN, {"hinges": None}), "parts[0].pin", "empty, so it would pin nothing"),
+    (changed(*PIN, {"hinge": 1}), "parts[0].pin.hinge", 'did you mean "hinges"'),
+    (changed(*PIN, {"hinges": 10}), "parts[0].pin.hinges", "whole number from 0 to 9, not 10"),
+    (changed(*PIN, {"hinges": -1}), "parts[0].pin.hinges", "from 0 to 9"),
+    (changed(*PIN, {"hinges": True}), "parts[0].pin.hinges", "whole number"),
+    (changed(*PIN, {"hinges": 4}), "parts[0].pin.hinges", "4 is more than fold.max_hinges 3 allows"),
+    (changed(*PIN, {"mechanism": "slant"}), "parts[0].pin.mechanism", '"in-place", "slanted", "deleted"'),
+    (changed(*PIN, {"side": "left"}), "parts[0].pin.side", '"l" or "r"'),
+    (changed(*PIN, {"window": 1}), "parts[0].pin.window", "two shares of the width"),
+    (changed(*PIN, {"window": [0, 0.2, 1]}), "parts[0].pin.window", "a list of 3"),
+    (changed(*PIN, {"window": [0, 1.2]}), "parts[0].pin.window[1]", "from 0 to 1, not 1.2"),
+    (changed(*PIN, {"window": [-0.2, 1]}), "parts[0].pin.window[0]", "from 0 to 1"),
+    (changed(*PIN, {"window": [0.4, 0.4]}), "parts[0].pin.window", "begin before it ends"),
+    (changed(*PIN, {"window": [0, 0.25]}), "parts[0].pin.window", "the nearest window is [0, 0.2]"),
+    (changed(*PIN, {"mechanism": "deleted", "side": "l"}), "parts[0].pin", '"deleted" and for side'),
+    (changed(*PIN, {"mechanism": "slanted", "hinges": 1}), "parts[0].pin", "slanted gets none"),
+    (changed(*PIN, {"mechanism": "in-place", "hinges": 0}), "parts[0].pin", "without hinges"),
+    (changed(*FORBID, {}), "parts[0].forbid", "a list of at most 100 patterns"),
+    (changed(*FORBID, [{"side": "l"}] * 101), "parts[0].forbid", "a list of 101"),
+    (changed(*FORBID, [1]), "parts[0].forbid[0]", "an object such as"),
+    (changed(*FORBID, [{"side": "l"}, {}]), "parts[0].forbid[1]", "empty, so it would forbid everything"),
+    (changed(*FORBID, [{"window": [0, 0.5]}]), "parts[0].forbid[0].window", "[0, 0.4]"),
+    (changed(*FORBID, [{"hinges": 5}]), "parts[0].forbid[0].hinges", "max_hinges 3"),
+    (changed(*FORBID, [{"mechanism": "deleted", "hinges": 1}]), "parts[0].forbid[0]", "taken away"),
+    (changed(*FORBID, [{"sides": "l"}]), "parts[0].forbid[0].sides", 'did you mean "side"'),
     (changed(*BOX, "size", [400, 0, 20]), "parts[0].box.size[1]", "above 0"),
     (changed(*BOX, "size", [400, -1, 20]), "parts[0].box.size[1]", "above 0"),
     (changed(*BOX, "size", [400, float("nan"), 20]), "parts[0].box.size[1]", "NaN"),
@@ -105,6 +136,13 @@ BROKEN = [
     (changed("fold", "max_hinges", 2.0), "fold.max_hinges", "whole number"),
     (changed("fold", "shrink_steps", 21), "fold.shrink_steps", "from 1 to 20"),
     (changed("fold", "slanting", 1), "fold.slanting", "true or false"),
+    (changed("fold", "ordering", "best"), "fold.ordering", '"greedy" or "optimal", not \'best\''),
+    (changed("fold", "collisions", True), "fold.collisions", '"swept" or "regions", not true'),
+    (changed("fold", "symmetry", "yes"), "fold.symmetry", "true or false"),
+    (changed("fold", "time_limit", 0), "fold.time_limit", "above 0, at most 3600, not 0"),
+    (changed("fold", "time_limit", 3601), "fold.time_limit", "at most 3600"),
+    (changed("fold", "time_limit", float("inf")), "fold.time_limit", "infinity"),
+    (changed("fold", "time_limits", 1), "fold.time_limits", 'did you mean "time_limit"'),
     (changed("fold", "thickness", 4), "fold.thickness", "belongs in print"),
     (changed("print", "thickness", 0.5), "print.thickness", "from 2 to 20"),
     (changed("print", "clearance", 0.01), "print.clearance", "0.15 to 1"),
@@ -148,6 +186,43 @@ def test_defaults() -> None:
     assert (recipe.name, recipe.direction, recipe.about, recipe.print.scale) == ("stool", None, "", None)
     assert recipe.print.printer.name == "prusa-mk4"
     assert recipe.parts[0].hingeable
+
+
+def test_the_solvers_own_options() -> None:
+    fold = parse(STOOL, "stool.json", "stool").fold
+    assert (fold.ordering, fold.collisions, fold.symmetry, fold.time_limit) == ("greedy", "swept", False, 2.0)
+    given = {"ordering": "optimal", "collisions": "regions", "symmetry": True, "time_limit": 30}
+    fold = parse({**STOOL, "fold": given}, "stool.json", "stool").fold
+    assert (fold.ordering, fold.collisions, fold.symmetry, fold.time_limit) == ("optimal", "regions", True, 30.0)
+
+
+def test_pinned_and_forbidden() -> None:
+    seat, leg = parse(STOOL, "stool.json", "stool").parts
+    assert (seat.pin, seat.forbid) == (leg.pin, leg.forbid) == (None, ())
+    data = changed(*PIN, {"hinges": 1, "window": [0, 0.3333]})
+    data["parts"][0]["forbid"] = [{"mechanism": "slanted"}, {"side": "l"}]
+    data["fold"] = {"shrink_steps": 3}
+    seat = parse(data, "stool.json", "stool").parts[0]
+    assert seat.pin == Pattern(hinges=1, window=(0.0, 1 / 3))
+    assert seat.forbid == (Pattern("slanted"), Pattern(side="l"))
+
+
+def test_a_pin_that_its_part_cannot_follow() -> None:
+    data = changed(*PIN, {"hinges": 1})
+    data["parts"][0]["hingeable"] = False
+    assert '"hingeable": false' in problems(data)["parts[0].pin"]
+
+
+def test_a_pin_that_is_forbidden() -> None:
+    data = changed(*PIN, {"hinges": 1, "side": "l"})
+    data["parts"][0]["forbid"] = [{"hinges": 3}, {"side": "l"}]
+    assert problems(data) == {"parts[0].forbid[1]": "forbids all that pin asks for"}
+
+
+def test_patterns_are_not_judged_by_options_that_are_wrong() -> None:
+    data = changed("fold", {"shrink_steps": 0, "max_hinges": "5"})
+    data["parts"][0]["pin"] = {"hinges": 5, "window": [0, 0.123]}
+    assert set(problems(data)) == {"fold.shrink_steps", "fold.max_hinges"}
 
 
 def test_units_are_converted() -> None:

@@ -25,6 +25,11 @@ def test_shipped_recipes_are_valid() -> None:
         validator.validate(json.loads(path.read_text(encoding="utf-8")))
 
 
+def test_the_schema_knows_patterns() -> None:
+    forbid = [{"mechanism": "slanted"}, {"side": "l"}]
+    jsonschema.validate({"parts": [{**PART, "pin": {"hinges": 1, "window": [0, 1]}, "forbid": forbid}]}, schema())
+
+
 def test_a_recipe_may_name_its_schema() -> None:
     data = {"$schema": "recipe.schema.json", "parts": [PART]}
     jsonschema.validate(data, schema())
@@ -32,7 +37,15 @@ def test_a_recipe_may_name_its_schema() -> None:
 
 
 @pytest.mark.parametrize(
-    "extra", [{"x": 1}, {"fold": {"alpha": 2}}, {"direction": "up"}, {"print": {"printer": "mk9"}}]
+    "extra",
+    [
+        *({"parts": [{**PART, "pin": pin}]} for pin in ({"hinges": 10}, {"side": "up"}, {"window": [0, 2]})),
+        {"x": 1},
+        {"fold": {"alpha": 2}},
+        {"fold": {"time_limit": 0}},
+        {"direction": "up"},
+        {"print": {"printer": "mk9"}},
+    ],
 )
 def test_the_schema_refuses(extra: dict[str, object]) -> None:
     with pytest.raises(jsonschema.ValidationError):

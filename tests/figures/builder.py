@@ -1,8 +1,8 @@
 """Furniture as the paper draws it: named sheets between coordinates, as good as without thickness.
 
 The paper's patches have no thickness and ours have. So the furniture of the figures is some hundred millimetres large,
-made of plates of one millimetre and printed one to one: knuckles, feet and stacks are then about a hundredth of a patch,
-and what a figure says about zero thickness must hold. The limits of the recipe's form do not apply to dataclasses.
+made of plates of one millimetre and printed one to one: knuckles, feet and stacks are about a hundredth of a patch, and
+what a figure says about zero thickness must hold. The limits of the recipe's form do not apply to dataclasses.
 """
 
 from __future__ import annotations

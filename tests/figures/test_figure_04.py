@@ -64,7 +64,9 @@ def test_figure_04c_the_top_of_an_in_place_h_moves_only_along_d(fold: Fold, part
 
 
 @pytest.mark.parametrize("max_hinges", [1, 2, 3, 5])
-@pytest.mark.parametrize("parts", [T_SCAFFOLD, SLANTED_T, H_SCAFFOLD, SLANTED_H], ids=["T", "slanted T", "H", "slanted H"])
+@pytest.mark.parametrize(
+    "parts", [T_SCAFFOLD, SLANTED_T, H_SCAFFOLD, SLANTED_H], ids=["T", "slanted T", "H", "slanted H"]
+)
 def test_figure_04d_no_hybrid_of_slanting_and_hinges_is_considered(parts: tuple[Part, ...], max_hinges: int) -> None:
     found = ways_to_fold("leg", *parts, max_hinges=max_hinges)
     assert {v.mechanism for v in found} == {"slanted", "in-place"}

@@ -78,8 +78,8 @@ def test_figure_08a_all_units_merged_fold_with_more_hinges(fold: Fold, monkeypat
             500,
             marks=pytest.mark.xfail(
                 strict=True,
-                reason="FoldingError: the table top, carried aside by its slanting legs, meets a wall; all rounds go to "
-                "narrower windows of the slanted legs, and in-place folding, which costs 0.1667, is never tried",
+                reason="FoldingError: the table top, carried aside by its slanting legs, meets a wall; all rounds go "
+                "to narrower windows of the slanted legs, and folding in place for 0.1667 is never tried",
             ),
         ),
     ],

@@ -8,6 +8,7 @@ import pytest
 from foldfab.folding.basic import Variant
 from foldfab.folding.mechanism import joints, reach, tilts
 from foldfab.folding.model import Chain, Side
+from foldfab.recipe.model import Part
 
 from .builder import NEARLY, folded_as, leaning, sheet, ways_to_fold
 
@@ -37,9 +38,9 @@ def test_figure_09a_a_t_is_split_at_equal_intervals_and_folds_in_a_zigzag(hinges
 
 
 @pytest.mark.parametrize("parts", [FLAP, UPRIGHT, *STARTS.values()], ids=["T", "H", *STARTS])
-def test_figure_09_each_number_of_hinges_folds_to_both_sides(parts: tuple[object, ...]) -> None:
+def test_figure_09_each_number_of_hinges_folds_to_both_sides(parts: tuple[Part, ...]) -> None:
     """And only an odd number of hinges folds an H-scaffold in place."""
-    found = [v for v in ways_to_fold("leg", *parts) if v.mechanism == "in-place"]  # type: ignore[arg-type]
+    found = [v for v in ways_to_fold("leg", *parts) if v.mechanism == "in-place"]
     counts = {1, 2, 3} if len(parts) == 2 else {1, 3}
     assert sorted((v.hinges, v.side) for v in found) == sorted((n, side) for n in counts for side in SIDES)
 
@@ -75,9 +76,9 @@ def test_figure_09b_the_two_sides_have_hinge_places_of_their_own(start: str, hin
 @pytest.mark.parametrize("parts", [UPRIGHT, *STARTS.values()], ids=["upright", *STARTS])
 @pytest.mark.parametrize("hinges", [1, 3])
 @pytest.mark.parametrize("side", SIDES)
-def test_figure_09b_the_top_comes_straight_down_and_ends_flat(parts: tuple[object, ...], hinges: int, side: Side) -> None:
-    """Rigid panels joined at their hinges, the whole time; only thickness lets the top rise a little before it falls."""
-    chain = folded_as(Variant("in-place", hinges, side), "leg", *parts)  # type: ignore[arg-type]
+def test_figure_09b_the_top_comes_straight_down_and_ends_flat(parts: tuple[Part, ...], hinges: int, side: Side) -> None:
+    """Rigid panels joined at their hinges all the time; thickness alone lets the top rise a little before it falls."""
+    chain = folded_as(Variant("in-place", hinges, side), "leg", *parts)
     top = reach(chain, np.linspace(0, 1, 400))
     assert np.abs(top[:, 0] - top[0, 0]).max() < 1e-6
     assert top[:, 1].max() - top[0, 1] < 0.1 and (np.diff(top[20:, 1]) < 0).all()

@@ -18,7 +18,8 @@ DEPTH = (0.0, 200.0)
 GROUND, SIDE = sheet("ground", (0, 300), DEPTH, 0), sheet("side", 0, DEPTH, (0, 200))
 BOX = (
     sheet("ground", (0, 600), (0, 400), 0), sheet("ceiling", (0, 600), (0, 400), 300),
-    sheet("left", 0, (0, 400), (0, 300)), sheet("right", 600, (0, 400), (0, 300)), sheet("back", (0, 600), 400, (0, 300)),
+    sheet("left", 0, (0, 400), (0, 300)), sheet("right", 600, (0, 400), (0, 300)),
+    sheet("back", (0, 600), 400, (0, 300)),
 )  # fmt: skip
 
 

@@ -14,13 +14,10 @@ from foldfab.folding.model import FoldSolution
 
 @pytest.mark.parametrize("slanting", [True, False])
 def test_figure_22_a_whole_room_folds(shipped: Callable[..., FoldSolution], slanting: bool) -> None:
-    """Bed, table, bench and shelf, one unit after another, down to a twentieth of the height or less than a sixth of it
-    with the plates that the print is made of.
-    """
+    """Bed, table, bench and shelf, one unit after another, until little more is left than a heap of plates."""
     made = shipped("room", slanting=slanting)
     assert not any(m.is_deleted for m in made.modifications)
     assert len(made.steps) >= 5
     assert all(first.end == second.start for first, second in pairwise(made.steps))
     open_height, flat_height = (size_at(made, t, np.eye(3))[2] for t in (0.0, 1.0))
-    plates = 2 * made.thickness.panel * len(made.scaffold.bases)
-    assert flat_height < open_height / 2 and flat_height < plates
+    assert flat_height < open_height / 3

@@ -56,7 +56,7 @@ def test_figure_08a_but_not_where_the_table_is_out_of_their_way(fold: Fold) -> N
 @pytest.mark.xfail(
     strict=True,
     reason="merging the units is refused ('deleting it would cut the furniture in two'): in the nominal fold of the "
-    "merged unit ceiling and table top come down to the same height, so that every option of the legs is blocked",
+    "merged unit ceiling and table top come down to the same height, and the ceiling blocks every option of the legs",
 )
 def test_figure_08a_all_units_merged_fold_with_more_hinges(fold: Fold, monkeypatch: pytest.MonkeyPatch) -> None:
     """The fallback of section 5.5, that a folding solution of one merged unit always exists."""
@@ -87,3 +87,12 @@ def test_figure_08a_all_units_merged_fold_with_more_hinges(fold: Fold, monkeypat
 def test_figure_08_leave_to_slant_never_makes_the_room_dearer(fold: Fold, width: float) -> None:
     """Whatever folds in place still does where slanting is allowed (section 5.3: an option)."""
     assert fold(*room(width)).cost <= fold(*room(width), slanting=False).cost + 1e-9
+
+
+@pytest.mark.xfail(
+    strict=True,
+    reason="0.2206 with slanting and 0.2004 without: the legs of the table slant for nothing, and where its top then lies "
+    "the back of the box has to shrink to 0.6; each unit offers the look-ahead no more than one solution",
+)
+def test_figure_08_nor_the_box_with_a_table_that_is_shipped(shipped: Callable[..., FoldSolution]) -> None:
+    assert shipped("box-table").cost <= shipped("box-table", slanting=False).cost + 1e-9

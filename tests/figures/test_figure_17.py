@@ -29,12 +29,24 @@ def box(width: float, depth: float) -> tuple[Part, ...]:
     )  # fmt: skip
 
 
+def price(solution: FoldSolution, alpha: float) -> float:
+    """What the modifications of a solution cost by equations 1 and 3 at another α."""
+    terms = [(m.importance, m.hinges / 3, (1 - kept(m)) ** 2) for m in solution.modifications]
+    return sum(share * (alpha * split + (1 - alpha) * lost) for share, split, lost in terms)
+
+
 def test_figure_17a_where_splits_are_penalised_less_there_are_more_and_the_back_shrinks_less(fold: Fold) -> None:
     """An H-scaffold folds in place with one hinge or three, so that the seat takes two more at once."""
     mild, strict = (fold(*CHAIR, along=ACROSS, alpha=alpha) for alpha in (0.25, 0.75))
     assert sum(m.hinges for m in mild.modifications) > sum(m.hinges for m in strict.modifications)
     assert kept(changes(strict)["back"]) < kept(changes(mild)["back"]) < 1
     assert shrunk(mild) == shrunk(strict) == {"back"}
+
+
+def test_figure_17a_each_chair_is_the_cheaper_one_at_its_own_preference(fold: Fold) -> None:
+    mild, strict = (fold(*CHAIR, along=ACROSS, alpha=alpha) for alpha in (0.25, 0.75))
+    assert mild.cost == pytest.approx(price(mild, 0.25)) and mild.cost < price(strict, 0.25) - 0.01
+    assert strict.cost == pytest.approx(price(strict, 0.75)) and strict.cost < price(mild, 0.75) - 0.01
 
 
 @pytest.mark.parametrize("size", [(500, 400), (600, 400), (700, 400)])

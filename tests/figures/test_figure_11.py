@@ -70,7 +70,7 @@ def test_figure_11b_regions_beside_each_other_are_no_conflict_however_close_the_
 
 @pytest.mark.xfail(
     strict=True,
-    reason="pieces on both sides of a cut are nearer to each other than the clearance and conflict: one of the walls is "
+    reason="pieces on both sides of a cut are nearer to each other than the clearance and conflict: one wall is "
     "deleted; of three or four pieces a third or a quarter is lost between them",
 )
 def test_figure_11b_regions_that_share_an_edge_are_no_conflict(fold: Fold) -> None:

@@ -29,7 +29,17 @@ class Pipeline(types.ModuleType):
         self.fails: dict[str, BaseException] = {}
         self.findings: tuple[Finding, ...] = ()
         self.rows: tuple[Any, ...] = ()
-        for name in ("load", "foldabilize", "alternatives", "fabricate", "write", "check", "shipped", "compose", "save"):
+        for name in (
+            "load",
+            "foldabilize",
+            "alternatives",
+            "fabricate",
+            "write",
+            "check",
+            "shipped",
+            "compose",
+            "save",
+        ):
             setattr(self, name, self._verb(name))
         self.prepare = lambda: None
 

@@ -65,9 +65,7 @@ def resting_boxes(chain: Chain, thickness: Thickness, progress: float) -> Boxes:
     return stacked([moving_boxes(chain, thickness, np.array([progress]))[0], anchor_feet(chain, thickness)])
 
 
-def swept_boxes(
-    chain: Chain, thickness: Thickness, progress: Array, near: Array, far: Array | None
-) -> Boxes:
+def swept_boxes(chain: Chain, thickness: Thickness, progress: Array, near: Array, far: Array | None) -> Boxes:
     """Panels, knuckles and feet (k, n) of a chain while its anchor and its far base are translated by `near` and `far`
     (k, 3)."""
     panels = moving_boxes(chain, thickness, progress)

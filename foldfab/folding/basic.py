@@ -73,11 +73,9 @@ def cost(hinges: int, kept: float, options: FoldOptions) -> float:
 def window_span(site: Site, window: tuple[int, int], steps: int, thickness: Thickness) -> Array | None:
     """Extent (2,) along the hinge direction of a window, or None where it is too narrow for a hinge.
 
-    A whole patch narrower than a hinge is widened to it.
+    A whole patch narrower than a hinge is widened to it. Two windows that meet at a cut are the gap apart.
     """
-    half, width = site.patch.width / 2, site.patch.width
-    low = max(-half + width * window[0] / steps, float(site.span[0]))
-    high = min(-half + width * window[1] / steps, float(site.span[1]))
+    low, high = (float(edge[0]) for edge in _extents(site, (window,), steps, thickness))
     if high - low >= thickness.hinge_width:
         return np.array([low, high])
     if window != (0, steps):
@@ -88,8 +86,7 @@ def window_span(site: Site, window: tuple[int, int], steps: int, thickness: Thic
 
 def too_narrow(site: Site, many: tuple[tuple[int, int], ...], steps: int, thickness: Thickness) -> Bools:
     """Which windows (n,) are too narrow for a hinge; the whole patch never is."""
-    cuts = site.patch.width * (np.array(many) / steps - 0.5)
-    low, high = np.maximum(cuts[:, 0], site.span[0]), np.minimum(cuts[:, 1], site.span[1])
+    low, high = _extents(site, many, steps, thickness)
     found: Bools = (high - low < thickness.hinge_width) & np.array([w != (0, steps) for w in many])
     return found
 
@@ -123,6 +120,14 @@ def modification(site: Site, option: Option, options: FoldOptions, reason: str) 
     kept = (option.window[0] / steps, option.window[1] / steps)
     v = option.variant
     return Modification(name, v.mechanism, v.hinges, v.side, kept, site.importance, option.cost, reason)
+
+
+def _extents(site: Site, many: tuple[tuple[int, int], ...], steps: int, thickness: Thickness) -> tuple[Array, Array]:
+    """Lower and upper ends (n,) of windows along the hinge direction, half a gap short of every cut."""
+    window = np.array(many)
+    cuts = site.patch.width * (window / steps - 0.5)
+    cuts += thickness.gap / 2 * np.stack([window[:, 0] > 0, -1.0 * (window[:, 1] < steps)], axis=1)
+    return np.maximum(cuts[:, 0], site.span[0]), np.minimum(cuts[:, 1], site.span[1])
 
 
 def _lengths(site: Site, variant: Variant, thickness: Thickness) -> Array | None:

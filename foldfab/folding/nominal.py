@@ -12,10 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from foldfab.folding import press
-from foldfab.folding.problem import Problem, clearances, levels
+from foldfab.folding import anatomy, press
+from foldfab.folding.problem import Problem, clear_height, clearances, levels
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Array
+from foldfab.geometry.boxes import bounds
 
 FRAMES = 17
 """Instants of each section at which clashes are looked for."""
@@ -38,10 +39,22 @@ def nominal(problem: Problem, unit: Unit) -> Nominal:
     """The nominal fold of a unit; a unit of T-scaffolds has one section in which its base stands still."""
     stack = problem.thickness.stack(2, has_upper_base=True)
     clear = clearances(problem, unit)
-    way = press.ways(unit.bases, dict.fromkeys(clear, stack), clear, levels(problem, unit))
+    least = {**_plates_apart(problem, unit), **dict.fromkeys(clear, stack)}
+    heights = {pair: clear_height(problem, *pair) for pair in least}
+    way = press.ways(unit.bases, least, heights, levels(problem, unit))
     marks = sorted({round(w, 6) for w in way.values()} | {0.0}, reverse=True)
     if not clear or len(marks) == 1:
         return Nominal({b: np.zeros((1, FRAMES)) for b in unit.bases})
     turn = 1 - np.cos(np.linspace(0.0, np.pi / 2, FRAMES))
     level = np.array([a + (b - a) * turn for a, b in itertools.pairwise(marks)])
     return Nominal({b: np.minimum(level, way[b]) - way[b] for b in unit.bases})
+
+
+def _plates_apart(problem: Problem, unit: Unit) -> dict[tuple[str, str], float]:
+    """By (lower, upper) base that lie over one another, the gap that remains between them."""
+    corners = {b: bounds(anatomy.base_boxes(problem.scaffold.base(b), problem.thickness)) for b in unit.bases}
+    low = np.array([c[0].min(0)[:2] for c in corners.values()])
+    high = np.array([c[1].max(0)[:2] for c in corners.values()])
+    over = (low[:, None] < high).all(-1) & (low[None] < high[:, None]).all(-1)
+    pairs = itertools.combinations(range(len(unit.bases)), 2)
+    return {(unit.bases[i], unit.bases[j]): problem.thickness.gap for i, j in pairs if over[i, j]}

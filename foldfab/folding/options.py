@@ -14,7 +14,7 @@ import numpy as np
 from foldfab.folding import basic
 from foldfab.folding.basic import Option
 from foldfab.folding.conflict import windows_table
-from foldfab.folding.problem import Problem
+from foldfab.folding.problem import Problem, demanding
 from foldfab.folding.prospects import Prospects
 from foldfab.folding.repertoire import Lane, awkwardness
 from foldfab.geometry.arrays import Array, Bools
@@ -79,6 +79,19 @@ def _options(
     extra = PREFERENCE * awkwardness(problem, lanes, offset)[:, None]
     weight = np.where(out, np.inf, price + extra)
     gone = site.importance * basic.cost(0, 0.0, options)
-    return Options(
-        patch, lanes, np.append(price.ravel(), gone), np.append(weight.ravel(), DELETION * site.importance), windows
-    )
+    weights = np.append(weight.ravel(), DELETION * site.importance)
+    made = Options(patch, lanes, np.append(price.ravel(), gone), weights, windows)
+    weights[~_allowed(problem, made)] = np.inf
+    return made
+
+
+def _allowed(problem: Problem, options: Options) -> Bools:
+    """Which options (n,) the recipe allows: those that fit what is pinned, and nothing that is forbidden."""
+    count, steps = len(options.price), problem.options.shrink_steps
+    allowed = np.ones(count, dtype=bool)
+    for part in demanding(problem, options.patch):
+        for i in range(count):
+            v, (a, b) = options[i].variant, options[i].window
+            what = (v.mechanism, v.hinges, v.side, (a / steps, b / steps)) if v else ("deleted", 0, None, (0.0, 0.0))
+            allowed[i] &= part.allows(*what)
+    return allowed

@@ -89,7 +89,9 @@ def travel(problem: Problem, fold: UnitFold) -> dict[str, Array]:
     ways = [fold.motion.shift[b] for b in fold.unit.bases]
     root = ways[int(fold.cluster[0])]
     moving = {i: way - root for i, way in enumerate(ways) if np.abs(way - root).max() > 0}
-    return {b.name: moving[int(k)] for b, k in zip(problem.scaffold.bases, fold.cluster, strict=True) if int(k) in moving}
+    return {
+        b.name: moving[int(k)] for b, k in zip(problem.scaffold.bases, fold.cluster, strict=True) if int(k) in moving
+    }
 
 
 def _weight(fold: UnitFold | Refusal) -> float:

@@ -16,7 +16,7 @@ from foldfab.folding.tree import UnitTree
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Array
 from foldfab.geometry.boxes import Boxes
-from foldfab.recipe.model import FoldOptions
+from foldfab.recipe.model import FoldOptions, Part
 from foldfab.scaffold.model import Scaffold
 
 
@@ -34,6 +34,8 @@ class Problem:
     """How the units hang together."""
     unit_of: Mapping[str, Unit]
     """By patch."""
+    parts: Mapping[str, Part]
+    """The recipe's parts, by name."""
     faces: Mapping[str, anatomy.Face]
     """By base, the faces of its plate."""
     furniture: Boxes
@@ -64,6 +66,12 @@ def variants(problem: Problem, unit: Unit, patch: str) -> tuple[Variant, ...]:
     return tuple(v for v in found if (patch, v) not in problem.banned)
 
 
+def demanding(problem: Problem, patch: str) -> tuple[Part, ...]:
+    """The parts of a patch whose modification is pinned or restricted by the recipe."""
+    parts = (problem.parts[name] for name in problem.sites[patch].patch.parts)
+    return tuple(part for part in parts if part.pin is not None or part.forbid)
+
+
 def is_slantable(problem: Problem, unit: Unit) -> bool:
     """Whether all basic scaffolds of the unit are H-scaffolds that share the same pair of bases."""
     return len(unit.bases) == 2 and all(problem.sites[p].far is not None for p in unit.patches)
@@ -72,7 +80,8 @@ def is_slantable(problem: Problem, unit: Unit) -> bool:
 def clearances(problem: Problem, unit: Unit) -> dict[tuple[str, str], float]:
     """By (anchor, far) of the unit's H-scaffolds, the clear height between the faces of the two bases, mm."""
     return {
-        (a, b): problem.faces[b].bottom - problem.faces[a].top for a, b in sorted({_pair(s) for s in held(problem, unit)})
+        (a, b): problem.faces[b].bottom - problem.faces[a].top
+        for a, b in sorted({_pair(s) for s in held(problem, unit)})
     }
 
 

@@ -45,21 +45,33 @@ def prospects(problem: Problem, own: Repertoire, around: Surroundings, *, in_pla
     """What the patches of a unit can do where it stands; only by in-place folding where asked for."""
     plain = {p: tuple(x for x in own.plain[p] if x.drag is None or not in_place) for p in own.unit.patches}
     every = [x for many in plain.values() for x in many]
-    room, met = _held_against(problem, own, around, every)
-    for x in every:
-        if x.is_out or (problem.options.stay_in_box and _leaves_box(problem, own, around, x)):
-            room[x.number] = np.ones_like(room[x.number])
-            met[x.number] = {*met[x.number], -1}
+    room: Room = {}
+    met: dict[int, set[int]] = {}
+    _look_at(problem, own, around, every, room, met)
     lanes = {}
     for patch, many in plain.items():
         raised = [r for x in many if room[x.number].any() for r in _raised(problem, own, around, x, room, met)]
         lanes[patch] = (*many, *raised)
+    _raise_partners(problem, own, around, lanes, room, met)
     owners = {n: tuple(sorted({_owner(around, i) for i in found})) for n, found in met.items()}
     return Prospects(lanes, room, owners)
 
 
 def _owner(around: Surroundings, box: int) -> str:
     return THE_BOX if box < 0 else around.solids[int(around.owner[box])].owner
+
+
+def _look_at(
+    problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane], room: Room, met: dict[int, set[int]]
+) -> None:
+    """Finds out which pieces of the lanes have no room, and what they meet."""
+    found, hit = _held_against(problem, own, around, many)
+    room.update(found)
+    met.update(hit)
+    for x in many:
+        if x.is_out or (problem.options.stay_in_box and _leaves_box(problem, own, around, x)):
+            room[x.number] = np.ones_like(room[x.number])
+            met[x.number].add(-1)
 
 
 def _held_against(
@@ -127,15 +139,26 @@ def _raised(
             return ()
         current = higher
         if current.number not in room:
-            found, hit = _held_against(problem, own, around, [current])
-            if current.is_out or (problem.options.stay_in_box and _leaves_box(problem, own, around, current)):
-                found[current.number] = np.ones_like(found[current.number])
-            room.update(found)
-            met.update(hit)
+            _look_at(problem, own, around, [current], room, met)
         if not room[current.number].any():
             break
     helps = current is not first and room[current.number].sum() < room[first.number].sum()
     return (current,) if helps else ()
+
+
+def _raise_partners(
+    problem: Problem, own: Repertoire, around: Surroundings, lanes: dict[str, tuple[Lane, ...]], room: Room,
+    met: dict[int, set[int]],
+) -> None:  # fmt: skip
+    """Slanted lanes drag their base together: where one stands on plinths, the others may as well."""
+    wanted = sorted({x.variant for many in lanes.values() for x in many if x.drag is not None and sum(x.variant.pads)})
+    for patch, many in lanes.items():
+        made = {x.variant for x in many}
+        found = (lane(problem, own, patch, v) for v in wanted if v not in made)
+        fresh = [x for x in found if x is not None and sum(x.variant.pads) <= PAD_SHARE * problem.sites[patch].clear]
+        if fresh:
+            _look_at(problem, own, around, fresh, room, met)
+            lanes[patch] = (*many, *fresh)
 
 
 def _needed_pads(

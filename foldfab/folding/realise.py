@@ -71,6 +71,11 @@ def _played(
             return Clash((blamed,), f"{chain.patch} cannot follow {beside or 'its unit'}", holds_for="any window")
     met = list(clashes(unit, problem.tree.number, chains, motion, around, problem.thickness))
     if met:
+        carried = [pair for pair in met if not set(pair) & set(chosen)]
+        if carried and is_slanted:
+            # What hangs on a base is dragged along with it, whatever is left of the patches that drag it.
+            dragging = tuple((c.patch,) for c in chains if c.far is not None)
+            return Clash(dragging, f"{carried[0][0]} is carried into {carried[0][1]}", holds_for="any window")
         mine = [tuple(p for p in pair if p in chosen) or tuple(chosen) for pair in met]
         return Clash(tuple(dict.fromkeys(mine)), f"{met[0][0]} meets {met[0][1]}", holds_for="wider windows")
     return chains, motion

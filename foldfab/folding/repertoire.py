@@ -116,7 +116,9 @@ def resting(problem: Problem, own: Repertoire, many: Iterable[Lane], section: in
         if section not in x.active:
             is_open = section < x.active.start
             at = own.movers[x.number][x.active.start if is_open else x.active.stop - 1][0 if is_open else -1]
-            was = own.nominal.down[x.chain.anchor][x.active.start if is_open else x.active.stop - 1, 0 if is_open else -1]
+            was = own.nominal.down[x.chain.anchor][
+                x.active.start if is_open else x.active.stop - 1, 0 if is_open else -1
+            ]
             shift = upright(own.nominal.down[x.chain.anchor][section] - was)
             parts.append((moved(still(at, FRAMES), shift[:, None]), x.number))
     return joined(parts, problem.thickness.gap / 2) if parts else None
@@ -152,9 +154,10 @@ def _made(problem: Problem, own: Repertoire, site: Site, variant: Variant) -> La
     own.movers.append(movers)
     corners = [bounds(boxes) for boxes in movers.values()]
     low, high = np.min([c[0].min((0, 1)) for c in corners], 0), np.max([c[1].max((0, 1)) for c in corners], 0)
-    middle, width = float(site.foot @ site.along), site.patch.width
+    middle, width, gap = float(site.foot @ site.along), site.patch.width, problem.thickness.gap
     cuts = middle - width / 2 + width * np.arange(steps + 1) / steps
-    cuts[0], cuts[-1] = min(cuts[0], middle + span[0]), max(cuts[-1], middle + span[1])
+    # Half the gap on either side belongs to the outermost pieces.
+    cuts[0], cuts[-1] = min(cuts[0], middle + span[0]) - gap, max(cuts[-1], middle + span[1]) + gap
     found = Lane(
         len(own.lanes), site.patch.name, variant, chain, _span(movers), ends(chain), peak(chain)[0],
         play_limit(chain, problem.thickness.gap), drag, cuts, sticks_out(problem, chain, movers.values()),

@@ -86,6 +86,7 @@ def posed(scaffold: Scaffold, thickness: Thickness) -> Problem:
     low, high = bounds(furniture)
     return Problem(
         scaffold, scaffold.recipe.fold, thickness, placed, units, tree, {p: u for u in units for p in u.patches},
+        {part.name: part for part in scaffold.recipe.parts},
         {base.name: anatomy.faces(base, thickness) for base in scaffold.bases}, furniture, (low.min(0), high.max(0)),
     )  # fmt: skip
 

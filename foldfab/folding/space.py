@@ -20,6 +20,8 @@ from foldfab.geometry.boxes import Boxes, bounds, near_pairs, overlaps
 
 PARALLEL = 1.0 - 1e-9
 """Cosine above which two hinge directions are the same line."""
+INSET = 1e-6
+"""Pieces end this much short of their cuts, mm, so that neighbours do not count as meeting."""
 CHUNK = 20_000
 """Pairs of boxes that are looked at in one go, for the sake of memory."""
 
@@ -177,9 +179,7 @@ def _crossing(first: Boxes, second: Boxes) -> Bools:
     return met
 
 
-def _once(
-    a: Batch, b: Batch, frame: Indices, p: Indices, q: Indices
-) -> tuple[Indices, Indices, Indices]:
+def _once(a: Batch, b: Batch, frame: Indices, p: Indices, q: Indices) -> tuple[Indices, Indices, Indices]:
     """Every pair of parallel boxes once: which of their pieces meet is the same at all times."""
     first, second = _at(a, frame, p), _at(b, frame, q)
     same = np.abs(np.einsum("kj,kj->k", first.axes[:, 1], second.axes[:, 1])) > PARALLEL
@@ -197,8 +197,8 @@ def _at(s: Batch, frame: Indices, box: Indices) -> Boxes:
 def _intervals(boxes: Boxes, cuts: Array) -> tuple[Array, Array]:
     """Where the pieces of boxes (k,) begin and end (k, N_s) along the boxes' hinge direction; empty ones in reverse."""
     middle = np.einsum("kj,kj->k", boxes.center, boxes.axes[:, 1])
-    low = np.maximum((middle - boxes.half[:, 1])[:, None], cuts[:, :-1])
-    high = np.minimum((middle + boxes.half[:, 1])[:, None], cuts[:, 1:])
+    low = np.maximum((middle - boxes.half[:, 1])[:, None], cuts[:, :-1] + INSET)
+    high = np.minimum((middle + boxes.half[:, 1])[:, None], cuts[:, 1:] - INSET)
     return low, high
 
 

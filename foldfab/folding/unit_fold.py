@@ -112,9 +112,7 @@ def _fold(
 class _Graph:
     """The conflict graph of a unit in some surroundings, with what simulations have added to it."""
 
-    def __init__(
-        self, problem: Problem, own: Repertoire, found: Prospects, options: Mapping[str, Options]
-    ) -> None:
+    def __init__(self, problem: Problem, own: Repertoire, found: Prospects, options: Mapping[str, Options]) -> None:
         self.patches = own.unit.patches
         self.options = [options[p] for p in self.patches]
         self.costs: list[Array] = [o.weight.copy() for o in self.options]
@@ -166,7 +164,8 @@ def _reasons(problem: Problem, found: Prospects, chosen: Mapping[str, Option]) -
         obstacles = {
             name
             for x in found.lanes[patch]
-            if option.variant is None or (x.variant.hinges, x.variant.side) == (option.variant.hinges, option.variant.side)
+            if option.variant is None
+            or (x.variant.hinges, x.variant.side) == (option.variant.hinges, option.variant.side)
             for name in found.obstacles[x.number]
         }
         if obstacles:

@@ -53,11 +53,6 @@ def test_figure_08a_but_not_where_the_table_is_out_of_their_way(fold: Fold) -> N
     assert wall_hinges(fold(*wide, slanting=False)) == 2
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="merging the units is refused ('deleting it would cut the furniture in two'): in the nominal fold of the "
-    "merged unit ceiling and table top come down to the same height, and the ceiling blocks every option of the legs",
-)
 def test_figure_08a_all_units_merged_fold_with_more_hinges(fold: Fold, monkeypatch: pytest.MonkeyPatch) -> None:
     """The fallback of section 5.5, that a folding solution of one merged unit always exists."""
 
@@ -74,14 +69,7 @@ def test_figure_08a_all_units_merged_fold_with_more_hinges(fold: Fold, monkeypat
     "width",
     [
         600,
-        pytest.param(
-            500,
-            marks=pytest.mark.xfail(
-                strict=True,
-                reason="FoldingError: the table top, carried aside by its slanting legs, meets a wall; all rounds go "
-                "to narrower windows of the slanted legs, and folding in place for 0.1667 is never tried",
-            ),
-        ),
+        500,
     ],
 )
 def test_figure_08_leave_to_slant_never_makes_the_room_dearer(fold: Fold, width: float) -> None:

@@ -68,11 +68,6 @@ def test_figure_11b_regions_beside_each_other_are_no_conflict_however_close_the_
     assert made.cost == pytest.approx(0.5 / 3)
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="pieces on both sides of a cut are nearer to each other than the clearance and conflict: one wall is "
-    "deleted; of three or four pieces a third or a quarter is lost between them",
-)
 def test_figure_11b_regions_that_share_an_edge_are_no_conflict(fold: Fold) -> None:
     """Two walls that would collide head on fold side by side when each is cut to its own half (as in figure 18)."""
     made = fold(*passage(150), slanting=False, stay_in_box=True, max_hinges=1, shrink_steps=2)

@@ -7,13 +7,15 @@ K × K around its axis, and a base hinge's foot reaches from the base face to K/
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
-from foldfab.folding.mechanism import frames, joints, tilts
-from foldfab.folding.model import Chain, Thickness
+from foldfab.folding.mechanism import REMEMBERED, joints, start, tilts
+from foldfab.folding.model import Chain, Shape, Thickness
 from foldfab.geometry.arrays import Array
 from foldfab.geometry.boxes import Boxes, stacked
+from foldfab.geometry.rotation import cosine, sine
 from foldfab.scaffold.model import BasePatch
 
 
@@ -45,19 +47,45 @@ def base_boxes(base: BasePatch, thickness: Thickness) -> Boxes:
 
 def moving_boxes(chain: Chain, thickness: Thickness, progress: Array) -> Boxes:
     """Slabs and knuckles (k, 2 m - 1) of a chain at each progress (k,), relative to the anchor's open position."""
-    origins, axes = frames(chain, progress)
-    count, half_k = len(chain.lengths), chain.panel / 2
-    low = np.where(np.arange(count) == 0, 0.0, thickness.gap / 2)
-    is_last_free = np.arange(count) == count - 1
-    high = chain.lengths - np.where(is_last_free, 0.0, thickness.gap / 2)
-    middle, half_span = float(chain.span.mean()), float(np.ptp(chain.span)) / 2
-    center = origins + axes[:, :, 2] * ((low + high) / 2)[:, None] + axes[:, :, 1] * middle
-    half = np.stack([np.full(count, half_k), np.full(count, half_span), (high - low) / 2], axis=1)
-    slabs = Boxes(center, axes, np.broadcast_to(half, center.shape))
-    if count == 1:
-        return slabs
-    bars = _knuckles(chain, half_k, progress, axes)
-    return Boxes(*(np.concatenate([getattr(slabs, f), getattr(bars, f)], axis=1) for f in ("center", "axes", "half")))
+    spans = tuple(map(tuple, np.vstack([chain.span, chain.hinge_spans[1:-1]]).tolist()))
+    made = _moving(chain.shape, chain.panel, thickness.gap, spans, np.asarray(progress, dtype=np.float64).tobytes())
+    basis = np.stack([chain.across, chain.along, chain.rise])
+    return Boxes(chain.root + made.center @ basis, made.axes @ basis, made.half)
+
+
+@lru_cache(REMEMBERED)
+def _moving(shape: Shape, panel: float, gap: float, spans: tuple[tuple[float, float], ...], progress: bytes) -> Boxes:
+    """The same in the chain's own frame (across, along, rise), from its root.
+
+    `spans` holds the extent of the panels and of each inserted hinge along the hinge direction.
+    """
+    angles = tilts(shape, np.frombuffer(progress))
+    axes_flat = joints(shape, angles)
+    count = len(shape.lengths)
+    sin, cos = sine(angles), cosine(angles)
+    axes = np.zeros((*angles.shape, 3, 3))
+    axes[..., 0, 0], axes[..., 0, 2] = cos, -sin
+    axes[..., 1, 1] = 1.0
+    axes[..., 2, 0], axes[..., 2, 2] = sin, cos
+    low = np.where(np.arange(count) == 0, 0.0, gap / 2)
+    high = np.array(shape.lengths) - np.where(np.arange(count) == count - 1, 0.0, gap / 2)
+    span = np.array(spans)
+    middle, reach = span.mean(axis=1), (span[:, 1] - span[:, 0]) / 2
+    center = np.zeros((*angles.shape, 3))
+    center[..., 0::2] = axes_flat[:, :-1]
+    center -= np.array(shape.offsets)[:-1, None] * axes[..., 0, :]
+    center += axes[..., 2, :] * ((low + high) / 2)[:, None]
+    center[..., 1] = middle[0]
+    half = np.stack([np.full(count, panel / 2), np.full(count, reach[0]), (high - low) / 2], axis=1)
+    knuckles = np.zeros((len(angles), count - 1, 3))
+    knuckles[..., 0::2] = axes_flat[:, 1:-1]
+    knuckles[..., 1] = middle[1:]
+    bars = np.stack([np.full(count - 1, panel / 2), reach[1:], np.full(count - 1, panel / 2)], axis=1)
+    halves = np.concatenate([half, bars])
+    return Boxes(
+        np.concatenate([center, knuckles], axis=1), np.concatenate([axes, axes[:, :-1]], axis=1),
+        np.broadcast_to(halves, (len(angles), *halves.shape)),
+    )  # fmt: skip
 
 
 def resting_boxes(chain: Chain, thickness: Thickness, progress: float) -> Boxes:
@@ -88,17 +116,8 @@ def far_feet(chain: Chain, thickness: Thickness) -> Boxes:
     """The foot or plinth of the chain on its far base (1,), or none (0,) for a T-scaffold, open position."""
     if chain.far is None:
         return Boxes(np.zeros((0, 3)), np.zeros((0, 3, 3)), np.zeros((0, 3)))
-    end = joints(chain, tilts(chain, np.zeros(1)))[0, -1]
-    place = chain.root + end @ np.stack([chain.across, chain.rise])
+    place = chain.root + start(chain)
     return _foot(chain, thickness, place, -chain.rise, chain.pads[1], chain.hinge_spans[-1])
-
-
-def _knuckles(chain: Chain, half_k: float, progress: Array, axes: Array) -> Boxes:
-    flat = joints(chain, tilts(chain, progress))[:, 1:-1]
-    spans = chain.hinge_spans[1:-1]
-    center = chain.root + flat @ np.stack([chain.across, chain.rise]) + chain.along * spans.mean(axis=1)[:, None]
-    half = np.stack([np.full(len(spans), half_k), np.ptp(spans, axis=1) / 2, np.full(len(spans), half_k)], axis=1)
-    return Boxes(center, axes[:, :-1], np.broadcast_to(half, center.shape))
 
 
 def _foot(chain: Chain, thickness: Thickness, axis: Array, outward: Array, pad: float, hinge: Array) -> Boxes:

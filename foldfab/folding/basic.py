@@ -56,7 +56,7 @@ def variants(site: Site, options: FoldOptions, thickness: Thickness, *, may_slan
     if is_t or (may_slant and options.slanting):
         found = [Variant("slanted", 0, side) for side in sides] + found
     span = window_span(site, (0, options.shrink_steps), options.shrink_steps, thickness)
-    return tuple(v for v in found if span is not None and chain(site, v, span, thickness))
+    return tuple(v for v in found if span is not None and _lengths(site, v, thickness) is not None)
 
 
 def windows(steps: int) -> tuple[tuple[int, int], ...]:
@@ -93,8 +93,6 @@ def too_narrow(site: Site, many: tuple[tuple[int, int], ...], steps: int, thickn
 
 def chain(site: Site, variant: Variant, span: Array, thickness: Thickness) -> Chain | None:
     """The thick chain of a variant with the given extent, or None where its panels would be too short."""
-    if abs(site.lean) > STEEPEST:
-        return None
     thickness = thickness.of(thickness.panel + variant.extra)
     lengths = _lengths(site, variant, thickness)
     if lengths is None or float(np.ptp(span)) < thickness.hinge_width - 1e-9:
@@ -132,6 +130,8 @@ def _extents(site: Site, many: tuple[tuple[int, int], ...], steps: int, thicknes
 
 def _lengths(site: Site, variant: Variant, thickness: Thickness) -> Array | None:
     """Axis spacings (N_h + 1,): equal, and one longer by Δ where the patch starts slanted (figure 9)."""
+    if abs(site.lean) > STEEPEST:
+        return None
     taken = thickness.axis_height + variant.pads[0]
     taken += thickness.axis_height + variant.pads[1] if site.far is not None else 0.0
     total = (site.clear - taken) / np.cos(site.lean)

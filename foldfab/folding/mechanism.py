@@ -84,8 +84,15 @@ def descent(chain: Chain) -> tuple[Array, Array, int]:
 
 def ends(chain: Chain) -> Array:
     """(3,) how far the last axis comes from open to folded, mm."""
-    way: Array = _ends(chain.shape) @ np.stack([chain.across, chain.rise])
+    first, last = _ends(chain.shape)
+    way: Array = (last - first) @ np.stack([chain.across, chain.rise])
     return way
+
+
+def start(chain: Chain) -> Array:
+    """(3,) where the last axis stands open, from the root, mm."""
+    place: Array = _ends(chain.shape)[0] @ np.stack([chain.across, chain.rise])
+    return place
 
 
 @lru_cache(REMEMBERED)
@@ -98,9 +105,8 @@ def _descent(shape: Shape) -> tuple[Array, Array, int]:
 
 @lru_cache(REMEMBERED)
 def _ends(shape: Shape) -> Array:
-    both = reach(shape, np.array([0.0, 1.0]))
-    way: Array = both[1] - both[0]
-    return way
+    """(2, 2) where the last axis stands open and folded, in the plane of the chain."""
+    return reach(shape, np.array([0.0, 1.0]))
 
 
 @lru_cache(REMEMBERED)

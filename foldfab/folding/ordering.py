@@ -19,7 +19,7 @@ from foldfab.folding.problem import Problem
 from foldfab.folding.repertoire import repertoire
 from foldfab.folding.scene import Scene, advanced, alone
 from foldfab.folding.surroundings import depends_on, look
-from foldfab.folding.unit_fold import Refusal, UnitFold, fold_seen, fold_unit
+from foldfab.folding.unit_fold import Refusal, UnitFold, fold_seen, fold_unit, least_weight
 from foldfab.folding.units import Unit, merged
 from foldfab.geometry.arrays import Array
 
@@ -54,8 +54,13 @@ class _State:
     """The same the other way round."""
 
 
-def floors(problem: Problem, scene: Scene) -> dict[str, float]:
-    """By unit, what it counts in the search where nothing but itself is there: no order lets it fold for less."""
+def floors(problem: Problem) -> dict[str, float]:
+    """By unit, what its cheapest choice without conflicts counts in the search, whatever stands around it."""
+    return {u.name: least_weight(problem, repertoire(problem, u)) for u in problem.units}
+
+
+def tight_floors(problem: Problem, scene: Scene) -> dict[str, float]:
+    """By unit, what it counts where nothing but itself is there and it is played through: no order lets it fold for less."""
     return {u.name: _weight(fold_unit(problem, alone(scene, u), u)) for u in problem.units}
 
 
@@ -140,6 +145,9 @@ def _change(state: _State, fold: UnitFold) -> float:
 def _final(state: _State, fold: UnitFold) -> UnitFold:
     """The fold as the furniture stands now: what looked the same before may differ in what sticks out of the outline."""
     own = repertoire(state.problem, fold.unit)
+    slants = any(o.variant is not None and o.variant.mechanism == "slanted" for o in fold.chosen.values())
+    if not slants or not state.scene.moved(fold.unit.bases[0]).any():
+        return fold
     around = look(state.problem, state.scene, own)
     final = fold_seen(state.problem, state.scene, own, around, is_final=True)
     return final if isinstance(final, UnitFold) else fold

@@ -57,6 +57,13 @@ def prospects(problem: Problem, own: Repertoire, around: Surroundings, *, in_pla
     return Prospects(lanes, room, owners)
 
 
+def unhindered(problem: Problem, own: Repertoire) -> Prospects:
+    """What the patches of a unit could do if nothing stood around it."""
+    steps = problem.options.shrink_steps
+    blocked = {x.number: np.full(steps, x.is_out) for many in own.plain.values() for x in many}
+    return Prospects(own.plain, blocked, {})
+
+
 def _owner(around: Surroundings, box: int) -> str:
     return THE_BOX if box < 0 else around.solids[int(around.owner[box])].owner
 

@@ -28,6 +28,9 @@ from foldfab.geometry.boxes import Boxes, bounds, moved
 ROOM_THICKNESSES = 2.0
 """Plinths and thicker panels may take a chain this many K out of what it sweeps without them."""
 
+TOUCH = 1e-3
+"""Parts exactly the gap apart do not meet: the grid that sizes stand on, mm."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Lane:
@@ -106,7 +109,7 @@ def lane(problem: Problem, own: Repertoire, patch: str, variant: Variant) -> Lan
 def swept(problem: Problem, own: Repertoire, many: Iterable[Lane], section: int) -> Batch | None:
     """The lanes that fold in a section, half the gap wider on every side, or None where there are none."""
     parts = [(own.movers[x.number][section], x.number) for x in many if section in x.active]
-    return joined(parts, problem.thickness.gap / 2) if parts else None
+    return joined(parts, problem.thickness.gap / 2 - TOUCH) if parts else None
 
 
 def resting(problem: Problem, own: Repertoire, many: Iterable[Lane], section: int) -> Batch | None:
@@ -121,7 +124,7 @@ def resting(problem: Problem, own: Repertoire, many: Iterable[Lane], section: in
             ]
             shift = upright(own.nominal.down[x.chain.anchor][section] - was)
             parts.append((moved(still(at, FRAMES), shift[:, None]), x.number))
-    return joined(parts, problem.thickness.gap / 2) if parts else None
+    return joined(parts, problem.thickness.gap / 2 - TOUCH) if parts else None
 
 
 def awkwardness(problem: Problem, many: tuple[Lane, ...], offset: Array) -> Array:

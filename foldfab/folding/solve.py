@@ -10,7 +10,7 @@ import numpy as np
 from foldfab.errors import FoldingError
 from foldfab.folding import anatomy, basic
 from foldfab.folding.model import FoldSolution, Modification, Step, Thickness
-from foldfab.folding.ordering import Ordered, floors, greedy, travel
+from foldfab.folding.ordering import Ordered, floors, greedy, tight_floors, travel
 from foldfab.folding.problem import Problem
 from foldfab.folding.rehearsal import first_clash
 from foldfab.folding.repertoire import repertoire
@@ -63,13 +63,14 @@ def _solved(scaffold: Scaffold, thickness: Thickness) -> FoldSolution:
     problem = posed(scaffold, thickness)
     _require_variants(problem)
     for _ in range(REHEARSALS):
-        scene = open_scene(problem)
-        floor = floors(problem, scene)
+        scene, floor = open_scene(problem), floors(problem)
         ordered = greedy(problem, scene, floor)
         if ordered.refusals:
             raise FoldingError(_refused(ordered))
         met = first_clash(problem, scene, ordered.folds)
         if met is None:
+            if spent_beyond(floor, ordered) > NO_MORE:
+                floor = tight_floors(problem, scene)
             return _solution(problem, floor, ordered)
         problem = replace(problem, banned=problem.banned | {met}, repertoires={}, solved={})
     told = ", ".join(sorted({patch for patch, _ in problem.banned}))
@@ -125,12 +126,17 @@ def _solution(problem: Problem, floor: Mapping[str, float], ordered: Ordered) ->
     changed.sort(key=lambda m: m.patch)
     cost = sum(m.cost for m in changed)
     # What was spent beyond the floor, preferences left aside, is what another solution could save at most.
-    spent = sum(fold.weight for fold in ordered.folds) - sum(floor.values())
+    spent = spent_beyond(floor, ordered)
     bound = cost if spent < NO_MORE else max(cost - spent, 0.0)
     steps = _steps(problem, ordered.folds)
     return FoldSolution(
         problem.scaffold, problem.thickness, chains, tuple(changed), steps, cost, bound, _notes(problem, ordered)
     )
+
+
+def spent_beyond(floor: Mapping[str, float], ordered: Ordered) -> float:
+    """By how much an order's folds count more than what they count at least."""
+    return sum(fold.weight for fold in ordered.folds) - sum(floor.values())
 
 
 def _steps(problem: Problem, folds: tuple[UnitFold, ...]) -> tuple[Step, ...]:

@@ -22,6 +22,8 @@ PARALLEL = 1.0 - 1e-9
 """Cosine above which two hinge directions are the same line."""
 INSET = 1e-6
 """Pieces end this much short of their cuts, mm, so that neighbours do not count as meeting."""
+SAMPLE = 8
+"""One in this many meetings is looked at first."""
 CHUNK = 20_000
 """Pairs of boxes that are looked at in one go, for the sake of memory."""
 
@@ -140,21 +142,17 @@ def conflicts(a: Batch, b: Batch, cuts: Array, excluded: Bools) -> dict[tuple[in
     found: dict[tuple[int, int], Bools] = {}
     for frame, p, q in meetings(a, b, excluded):
         frame, p, q = _once(a, b, frame, p, q)
-        first, second = _at(a, frame, p), _at(b, frame, q)
-        met = _pieces_met(first, cuts[a.lane[p]], second, cuts[b.lane[q]])
-        code = a.lane[p] * len(cuts) + b.lane[q]
-        pairs, place = np.unique(code, return_inverse=True)
+        pairs, place = np.unique(a.lane[p] * len(cuts) + b.lane[q], return_inverse=True)
         table = np.zeros((len(pairs), steps, steps), dtype=bool)
-        row, s, t = np.nonzero(met)
-        table[place[row], s, t] = True
-        for pair, own in zip(pairs, table, strict=True):
-            key = (int(pair) // len(cuts), int(pair) % len(cuts))
+        _fill(table, place, _at(a, frame, p), cuts[a.lane[p]], _at(b, frame, q), cuts[b.lane[q]])
+        for pair, own in zip(pairs.tolist(), table, strict=True):
+            key = divmod(pair, len(cuts))
             found[key] = found[key] | own if key in found else own
     return {key: own for key, own in found.items() if own.any()}
 
 
-def _pieces_met(a: Boxes, cuts_a: Array, b: Boxes, cuts_b: Array) -> Bools:
-    """Which pieces of overlapping boxes (k,) meet, (k, N_s, N_s)."""
+def _fill(table: Bools, place: Indices, a: Boxes, cuts_a: Array, b: Boxes, cuts_b: Array) -> None:
+    """Marks in `table` (pairs, N_s, N_s) which pieces of overlapping boxes (k,) meet, `place` (k,) being their pairs."""
     low_a, high_a = _intervals(a, cuts_a)
     low_b, high_b = _intervals(b, cuts_b)
     cosine = np.einsum("kj,kj->k", a.axes[:, 1], b.axes[:, 1])
@@ -162,21 +160,25 @@ def _pieces_met(a: Boxes, cuts_a: Array, b: Boxes, cuts_b: Array) -> Bools:
     # On the line of `a`, where `b` may run the other way.
     sign = np.sign(cosine)[:, None]
     low, high = np.minimum(sign * low_b, sign * high_b), np.maximum(sign * low_b, sign * high_b)
-    met: Bools = (low_a[:, :, None] <= high[:, None]) & (low[:, None] <= high_a[:, :, None])
-    met &= (high_a > low_a)[:, :, None] & (high_b > low_b)[:, None]
+    real: Bools = (high_a > low_a)[:, :, None] & (high_b > low_b)[:, None]
+    row, s, t = np.nonzero(real & same[:, None, None] & (low_a[:, :, None] < high[:, None]) & (low[:, None] < high_a[:, :, None]))
+    table[place[row], s, t] = True
     rest = np.nonzero(~same)[0]
     if len(rest):
-        met[rest] = _crossing(_pieces(a[rest], cuts_a[rest]), _pieces(b[rest], cuts_b[rest]))
-    return met
+        first, second = _pieces(a[rest], cuts_a[rest]), _pieces(b[rest], cuts_b[rest])
+        near = real[rest] & _bounds_meet(bounds(first), bounds(second))
+        # Most pieces that meet do so in many frames: a few of these tell for most pairs, the others need not be asked.
+        for part in (slice(0, None, SAMPLE), slice(None)):
+            row, s, t = np.nonzero(near[part] & ~table[place[rest[part]]])
+            row = np.arange(len(rest))[part][row]
+            hit = overlaps(first[row, s], second[row, t])
+            table[place[rest[row[hit]]], s[hit], t[hit]] = True
 
 
-def _crossing(first: Boxes, second: Boxes) -> Bools:
-    steps = first.half.shape[1]
-    shape = (len(first), steps, steps)
-    left = _shaped(Boxes(first.center[:, :, None], first.axes[:, :, None], first.half[:, :, None]), shape)
-    right = _shaped(Boxes(second.center[:, None], second.axes[:, None], second.half[:, None]), shape)
-    met: Bools = overlaps(left, right) & (left.half[..., 1] > 0) & (right.half[..., 1] > 0)
-    return met
+def _bounds_meet(a: tuple[Array, Array], b: tuple[Array, Array]) -> Bools:
+    """Which pieces (k, n) and (k, m) have bounds that overlap, (k, n, m)."""
+    near: Bools = (a[0][:, :, None] <= b[1][:, None]).all(-1) & (b[0][:, None] <= a[1][:, :, None]).all(-1)
+    return near
 
 
 def _once(a: Batch, b: Batch, frame: Indices, p: Indices, q: Indices) -> tuple[Indices, Indices, Indices]:

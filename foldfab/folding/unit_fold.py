@@ -18,7 +18,7 @@ from foldfab.folding.model import Chain
 from foldfab.folding.options import Options, options_of
 from foldfab.folding.press import Motion
 from foldfab.folding.problem import Problem
-from foldfab.folding.prospects import Prospects, prospects
+from foldfab.folding.prospects import Prospects, prospects, unhindered
 from foldfab.folding.realise import Clash, realised
 from foldfab.folding.repertoire import Repertoire, repertoire
 from foldfab.folding.scene import Scene
@@ -77,6 +77,16 @@ def fold_seen(
         problem.solved[key] = _fold(problem, scene, own, around, in_place=in_place)
     found: UnitFold | Refusal = problem.solved[key]
     return found
+
+
+def least_weight(problem: Problem, own: Repertoire) -> float:
+    """What the cheapest choice without conflicts counts, whatever stands around the unit and however it is played."""
+    found = unhindered(problem, own)
+    options = options_of(problem, found, np.zeros(3))
+    picked = _Graph(problem, own, found, options).cheapest()
+    if picked is None:
+        return np.inf
+    return sum(float(options[p].weight[i]) for p, i in zip(own.unit.patches, picked, strict=True))
 
 
 def _fold(

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from foldfab.geometry.arrays import Array, Bools, Indices
-from foldfab.geometry.boxes import Boxes, stacked
+from foldfab.geometry.boxes import Boxes, bounds, stacked
 from foldfab.validity.configuration import Poses, Tree, arranged
 from foldfab.validity.model import Folding
-from foldfab.validity.separation import along, corners, cut_back, separation
+from foldfab.validity.separation import along, cut_back, separation
 
 TOUCH = 0.05
 """Bodies may share this much, mm: a layer of a print, and far less than the clearance of a hinge."""
@@ -35,10 +35,11 @@ class Meeting:
     """Two bodies that share space."""
 
     time: float
+    """The first moment."""
     first: str
     second: str
     depth: float
-    """mm."""
+    """The least way that would part them when they share most, mm."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,16 +67,16 @@ class _Spans:
 
 
 def meetings(folding: Folding, tree: Tree) -> list[Meeting]:
-    """Pairs of bodies that meet, each with the first moment that is found, sorted by time."""
-    pieces = _pieces(folding)
-    found: dict[tuple[int, int], Meeting] = {}
-    for meeting, pair in _at_start(folding, tree, pieces):
-        found.setdefault(pair, meeting)
-    times = folding.moments
+    """Pairs of bodies that meet, each with the first moment and the most that they share, sorted by time."""
+    pieces, times = _pieces(folding), folding.moments
+    all_met = list(_at_start(folding, tree, pieces))
     for i in range(0, len(times) - 1, CHUNK):
-        for meeting, pair in _within(folding, tree, pieces, times[i : i + CHUNK + 1]):
-            if pair not in found or meeting.time < found[pair].time:
-                found[pair] = meeting
+        all_met += _within(folding, tree, pieces, times[i : i + CHUNK + 1])
+    found: dict[tuple[str, str], Meeting] = {}
+    for met in all_met:
+        pair = (met.first, met.second)
+        known = found.get(pair, met)
+        found[pair] = Meeting(min(met.time, known.time), *pair, max(met.depth, known.depth))
     return sorted(found.values(), key=lambda m: (m.time, m.first, m.second))
 
 
@@ -104,14 +105,13 @@ def _pieces(folding: Folding) -> _Pieces:
     return _Pieces(stacked(boxes), body, tested)
 
 
-def _at_start(folding: Folding, tree: Tree, pieces: _Pieces) -> Iterator[tuple[Meeting, tuple[int, int]]]:
+def _at_start(folding: Folding, tree: Tree, pieces: _Pieces) -> Iterator[Meeting]:
     """What meets at the first moment; later only what moves against each other can begin to."""
     start = folding.moments[:1]
-    points = corners(_posed(pieces, _poses(folding, tree, start)))[0]
-    low, high = points.min(-2), points.max(-2)
+    poses = _poses(folding, tree, start)
+    low, high = bounds(_posed(pieces, poses)[0])
     first, second = np.nonzero(pieces.tested & _near(low, high))
     spans = _Spans(np.full(len(first), start[0]), np.full(len(first), start[0]), first, second)
-    poses = _poses(folding, tree, start)
     at = np.zeros(len(first), dtype=np.int64)
     depth = separation(pieces.boxes[first], _relative(pieces, spans, poses, at))[0]
     yield from _met(folding, pieces, spans, depth, spans.start)
@@ -119,7 +119,7 @@ def _at_start(folding: Folding, tree: Tree, pieces: _Pieces) -> Iterator[tuple[M
 
 def _within(
     folding: Folding, tree: Tree, pieces: _Pieces, times: Array
-) -> Iterator[tuple[Meeting, tuple[int, int]]]:
+) -> Iterator[Meeting]:
     """What meets between some moments (k,)."""
     spans = _close(folding, tree, pieces, times)
     for _ in range(DEPTH + 1):
@@ -148,11 +148,13 @@ def _close(folding: Folding, tree: Tree, pieces: _Pieces, times: Array) -> _Span
     """The pairs of pieces that move against each other and come near, by interval."""
     moments = np.concatenate([times, (times[1:] + times[:-1]) / 2])
     poses = _poses(folding, tree, moments)
-    points = corners(_posed(pieces, poses))
+    posed = _posed(pieces, poses)
     k = len(times) - 1
-    ends = np.stack([points[:k], points[k + 1 :], points[1 : k + 1]])
-    bend = np.linalg.norm(ends[1] - (ends[0] + ends[2]) / 2, axis=-1).max(-1)[..., None]
-    low, high = ends.min((0, -2)) - bend, ends.max((0, -2)) + bend
+    ends = [posed[:k], posed[k + 1 :], posed[1 : k + 1]]
+    edges = [bounds(boxes) for boxes in ends]
+    bend = _bend(*ends)[..., None]
+    low = np.min([edge[0] for edge in edges], axis=0) - bend
+    high = np.max([edge[1] for edge in edges], axis=0) + bend
     group = _moving_alike(poses)[pieces.body]
     tested = pieces.tested & (group[:, None] != group[None])
     first, second = np.nonzero(tested & _near(low.min(0), high.max(0)))
@@ -180,10 +182,16 @@ def _near(low: Array, high: Array) -> Bools:
 
 def _is_safe(own: Boxes, posed: list[Boxes], axes: list[Array]) -> Bools:
     """Whether one of three directions (n, 3) separates the pairs at start, middle and end, bends allowed for."""
-    start, middle, end = (corners(boxes) for boxes in posed)
-    bend = 1.5 * np.linalg.norm(middle - (start + end) / 2, axis=-1).max(-1)
     least = [np.min([along(own, boxes, axis) for boxes in posed], axis=0) for axis in axes]
-    return np.asarray(np.max(least, axis=0) - bend >= -TOUCH)
+    return np.asarray(np.max(least, axis=0) - 1.5 * _bend(*posed) >= -TOUCH)
+
+
+def _bend(start: Boxes, middle: Boxes, end: Boxes) -> Array:
+    """How far (…,) any point of some boxes is at most from the middle of its way, mm: 0 where the way is straight."""
+    off = np.linalg.norm(middle.center - (start.center + end.center) / 2, axis=-1)
+    turned = np.linalg.norm(middle.axes - (start.axes + end.axes) / 2, axis=-1)
+    bend: Array = off + (turned * start.half).sum(-1)
+    return bend
 
 
 def _passed(own: Boxes, before: Boxes, after: Boxes) -> Array:
@@ -231,9 +239,9 @@ def _relative(pieces: _Pieces, spans: _Spans, poses: Poses, at: Indices) -> Boxe
 
 def _met(
     folding: Folding, pieces: _Pieces, spans: _Spans, apart: Array, time: Array
-) -> Iterator[tuple[Meeting, tuple[int, int]]]:
+) -> Iterator[Meeting]:
     """The pairs that share more than a touch."""
     names = [body.name for body in folding.linkage.bodies]
     for i in np.nonzero(apart < -TOUCH)[0]:
         pair = sorted((int(pieces.body[spans.first[i]]), int(pieces.body[spans.second[i]])))
-        yield Meeting(float(time[i]), names[pair[0]], names[pair[1]], float(-apart[i])), (pair[0], pair[1])
+        yield Meeting(float(time[i]), names[pair[0]], names[pair[1]], float(-apart[i]))

@@ -108,12 +108,14 @@ def in_place(strip: Strip, height: Array) -> Array:
     lengths = strip.lengths[::-1] if folds_with else strip.lengths
     n, a, long = len(lengths) - 1, float(lengths[0]), float(lengths[-1])
     shift = float(lengths.sum()) * np.sin(abs(strip.lean))
-    low, high = np.full(len(height), -QUARTER), np.full(len(height), abs(strip.lean))
-    for _ in range(ROUNDS):
+    is_moving = (height > 0) & (height < strip.clear)
+    low, high = np.full(int(is_moving.sum()), -QUARTER), np.full(int(is_moving.sum()), abs(strip.lean))
+    for _ in range(ROUNDS if is_moving.any() else 0):
         psi = (low + high) / 2
-        is_low = n * a * np.cos(psi) + long * np.cos(_balance(psi, n, a, long, shift)) < height
+        is_low = n * a * np.cos(psi) + long * np.cos(_balance(psi, n, a, long, shift)) < height[is_moving]
         low, high = np.where(is_low, psi, low), np.where(is_low, high, psi)
-    psi = np.where(height <= 0, -QUARTER, np.where(height >= strip.clear, abs(strip.lean), (low + high) / 2))
+    psi = np.where(height <= 0, -QUARTER, abs(strip.lean))
+    psi[is_moving] = (low + high) / 2
     beta = np.where(height <= 0, QUARTER, _balance(psi, n, a, long, shift))
     turn = np.where(np.arange(n) % 2 == 0, 1.0, -1.0)
     short = np.where(psi[:, None] >= 0, psi[:, None], psi[:, None] * turn)
@@ -123,7 +125,7 @@ def in_place(strip: Strip, height: Array) -> Array:
 
 def _balance(psi: Array, n: int, a: float, long: float, shift: float) -> Array:
     """Tilt of the long panel."""
-    found: Array = np.arcsin(np.clip((shift - np.where(psi >= 0, n, 1) * a * np.sin(psi)) / long, -1.0, 1.0))
+    found: Array = np.arcsin(np.minimum((shift - np.where(psi >= 0, n, 1) * a * np.sin(psi)) / long, 1.0))
     return found
 
 

@@ -15,8 +15,6 @@ from foldfab.geometry.boxes import Boxes
 SKEW = 1e-5
 """Edges whose cross product is shorter than this are parallel and make no axis of their own."""
 
-_SIGNS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float64)
-
 
 def separation(a: Boxes, b: Boxes) -> tuple[Array, Array]:
     """Distance (n,) of two flat collections pair by pair, negative where they overlap, mm, and the axis (n, 3) to it.
@@ -44,12 +42,6 @@ def along(a: Boxes, b: Boxes, axes: Array) -> Array:
 def reach(boxes: Boxes, axes: Array) -> Array:
     """Half extents (n, m) of boxes (n,) along axes (n, m, 3)."""
     found: Array = np.einsum("nmk,nk->nm", np.abs(np.einsum("nmj,nkj->nmk", axes, boxes.axes)), boxes.half)
-    return found
-
-
-def corners(boxes: Boxes) -> Array:
-    """(…, 8, 3) corners of boxes (…,)."""
-    found: Array = boxes.center[..., None, :] + np.einsum("ck,...k,...kj->...cj", _SIGNS, boxes.half, boxes.axes)
     return found
 
 

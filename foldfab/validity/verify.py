@@ -23,8 +23,8 @@ from foldfab.validity.statement import contradictions
 CLOSES = 1e-3
 """How far a hinge may be from closing beyond its play, mm: the grid of places in print."""
 BETWEEN = 0.05
-"""How far a body may be from where it is said to be halfway between two samples, mm: places are interpolated straight,
-while hinges turn on circles."""
+"""How far either may be off halfway between two samples, mm: what a solution states is interpolated straight there,
+while its hinges turn on circles."""
 TURNS = 1e-6
 """How far directions and angles may be off, radians."""
 PLAY_SHARE = 0.5
@@ -64,7 +64,7 @@ def judged(folding: Folding) -> list[Violation]:
     found = [*_adrift(folding, tree), *_not_open(folding, angles[0]), *_not_flat(folding, poses)]
     found += [*_broken(folding, tree, times, angles, slips, poses), *_elsewhere(folding, tree, times, poses)]
     for m in meetings(folding, tree):
-        told = f"{m.first} and {m.second} share {m.depth:.2f} mm"
+        told = f"{m.first} and {m.second} share up to {m.depth:.2f} mm"
         found.append(_violation(folding, "collision", m.time, (m.first, m.second), m.depth, told))
     return found
 
@@ -112,7 +112,7 @@ def _broken(
     turned = np.maximum(found.bend, found.twist)
     for i, h in enumerate(tree.closing):
         hinge = folding.linkage.hinges[h]
-        bad = np.nonzero((found.distance[:, i] > CLOSES) | (turned[:, i] > TURNS))[0]
+        bad = np.nonzero((found.distance[:, i] > _allowed(folding, times)) | (turned[:, i] > TURNS))[0]
         if not len(bad):
             continue
         distance, angle = float(found.distance[:, i].max()), float(turned[:, i].max())
@@ -122,6 +122,11 @@ def _broken(
         yield _violation(folding, "hinge", times[bad[0]], (hinge.first, hinge.second), amount, told)
 
 
+def _allowed(folding: Folding, times: Array) -> Array:
+    """How far a hinge may be from closing at times (k,), mm."""
+    return np.where(np.isin(times, folding.moments), CLOSES, BETWEEN)
+
+
 def _elsewhere(folding: Folding, tree: Tree, times: Array, poses: Poses) -> Iterator[Violation]:
     """Bodies are where they are said to be."""
     said = folding.places(times) if folding.places else {}
@@ -129,7 +134,7 @@ def _elsewhere(folding: Folding, tree: Tree, times: Array, poses: Poses) -> Iter
         if body.name not in said or body.name in tree.adrift:
             continue
         off = np.linalg.norm(poses.place[:, b] - said[body.name], axis=1)
-        bad = np.nonzero(off > np.where(np.isin(times, folding.moments), CLOSES, BETWEEN))[0]
+        bad = np.nonzero(off > _allowed(folding, times))[0]
         if len(bad):
             told = f"{body.name} is up to {off.max():.3f} mm from where its hinges put it"
             yield _violation(folding, "hinge", times[bad[0]], (body.name,), float(off.max()), told)

@@ -109,12 +109,15 @@ def _fold(arguments: argparse.Namespace) -> int:
             return 1
         raise
     milliseconds = 1000 * (time.perf_counter() - start)
+    progress("trying it out")
+    verdict = pipeline.examine(solution) if arguments.verify else None
     progress.done()
     if arguments.json:
-        _print_json(report.fold_facts(solution, milliseconds))
+        _print_json(report.fold_facts(solution, milliseconds) | (report.verdict_facts(verdict) if verdict else {}))
     else:
         print(report.fold_table(solution, milliseconds))
-    return 0
+        print(f"\n{report.judgement(verdict)}" if verdict else "", end="\n" if verdict else "")
+    return 1 if verdict and verdict.violations else 0
 
 
 def _check(arguments: argparse.Namespace) -> int:
@@ -181,6 +184,9 @@ def _parser() -> argparse.ArgumentParser:
     making.add_argument("-o", "--output", metavar="DIR", default="prints", help="where its folder goes (prints)")
     folding = _command(commands, "fold", _fold, "only say what would be changed, in which order, at which cost")
     folding.add_argument("--json", action="store_true", help="print the facts as JSON")
+    folding.add_argument(
+        "--verify", action="store_true", help="try the fold out at every moment, apart from the search"
+    )
     for command, quiet in ((making, "show no progress and no summary"), (folding, "show no progress")):
         command.add_argument("recipe", metavar="RECIPE", help="a .json file, or the name of a shipped recipe")
         command.add_argument("-q", "--quiet", action="store_true", help=quiet)

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from foldfab.fabrication.model import Assembly
     from foldfab.folding.model import FoldSolution
     from foldfab.scaffold.model import Scaffold
+    from foldfab.validity.model import Verdict, Violation
 
 Progress = Callable[[str], None]
 """Called with what is being done, one short line."""
@@ -77,6 +78,21 @@ def foldabilize(recipe: Recipe) -> FoldSolution:
     if not found:
         raise FoldingError(f"{recipe.name} folds along none of the six axis directions\n  " + "\n  ".join(reasons))
     return min(found, key=lambda f: f[:3])[3]
+
+
+def verify(solution: FoldSolution) -> tuple[Violation, ...]:
+    """Why a solution is not valid in the sense of section 4, with thickness and without; empty where it is.
+
+    Found from the solution alone, apart from the search.
+    """
+    return examine(solution).violations
+
+
+def examine(solution: FoldSolution) -> Verdict:
+    """The same, with what was looked at."""
+    from foldfab.validity.verify import verdict
+
+    return verdict(solution)
 
 
 def fabricate(solution: FoldSolution, *, posture: Posture | None = None, progress: Progress | None = None) -> Assembly:

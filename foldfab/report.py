@@ -11,6 +11,7 @@ import numpy as np
 from foldfab.fabrication.model import Assembly
 from foldfab.folding.model import FoldSolution, Modification
 from foldfab.geometry.arrays import Array
+from foldfab.validity.model import Verdict
 
 WINDOW = 1e-9
 """How far a window may be from [0, 1] and still be the whole width."""
@@ -64,6 +65,30 @@ def fold_facts(solution: FoldSolution, milliseconds: float) -> dict[str, Any]:
 def refused_facts(reason: str) -> dict[str, Any]:
     """The JSON data of furniture that cannot be folded."""
     return {"status": "refused", "reason": reason}
+
+
+def judgement(verdict: Verdict) -> str:
+    """Whether a fold is valid: one line, or one for each violation."""
+    if verdict.violations:
+        return "\n".join(["not valid", *(f"  {violation.text}" for violation in verdict.violations)])
+    closing = _count(verdict.closing, "hinge")
+    return f"valid: {verdict.moments} moments, {closing} beyond the spanning tree, with and without thickness"
+
+
+def verdict_facts(verdict: Verdict) -> dict[str, Any]:
+    """The same as JSON data."""
+    told = [
+        {
+            "kind": violation.kind,
+            "model": violation.model,
+            "time": violation.time,
+            "parts": list(violation.parts),
+            "amount": violation.amount,
+            "text": violation.text,
+        }
+        for violation in verdict.violations
+    ]
+    return {"valid": not verdict.violations, "violations": told}
 
 
 def change(modification: Modification) -> str:

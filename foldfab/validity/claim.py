@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from foldfab.folding.model import Chain, FoldSolution, Step
 from foldfab.geometry.arrays import Array
 from foldfab.validity.model import Body, Hinge
 
-Folds = Callable[[Chain, Array], Array]
-"""A chain and times (k,) to the tilts (k, m) of its panels, radians."""
+SAME_MOMENT = 1e-12
+"""Times closer than this are one."""
 
 
 def sampled(step: Step, values: Array, times: Array) -> Array:
@@ -34,17 +32,24 @@ def step_of(solution: FoldSolution, patch: str) -> Step:
 def moments(solution: FoldSolution) -> Array:
     """All times (k,) at which the solution samples its motion, 0 and 1 included."""
     times = [step.start + step.samples * (step.end - step.start) for step in solution.steps]
-    found: Array = np.unique(np.concatenate([*times, [0.0, 1.0]]).clip(0.0, 1.0))
-    # Steps meet in the same moment up to rounding.
-    return found[np.append(True, np.diff(found) > 1e-12)]
+    return apart(np.concatenate([*times, [0.0, 1.0]]).clip(0.0, 1.0))
+
+
+def apart(times: Array) -> Array:
+    """Times in ascending order, each once; steps meet in the same moment up to rounding."""
+    found: Array = np.unique(times)
+    kept: Array = found[np.append(True, np.diff(found) > SAME_MOMENT)]
+    kept[-1] = found[-1]
+    return kept
 
 
 def bases_at(solution: FoldSolution, times: Array) -> dict[str, Array]:
     """By base, the translation (k, 3) since the open posture that the solution states, mm."""
-    return {
-        base.name: np.sum([sampled(step, step.travel[base.name], times) for step in solution.steps], axis=0)
-        for base in solution.scaffold.bases
-    }
+    found = {base.name: np.zeros((len(times), 3)) for base in solution.scaffold.bases}
+    for step in solution.steps:
+        for base in found:
+            found[base] += sampled(step, step.travel[base], times)
+    return found
 
 
 def axes_of(root: Array, chain: Chain, lengths: Array, offsets: Array, lean: float) -> Array:

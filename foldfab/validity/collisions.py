@@ -99,7 +99,7 @@ def _pieces(folding: Folding) -> _Pieces:
     for hinge in hinges:
         if hinge.room > 0:
             one, other = body[:whole] == index[hinge.first], body[:whole] == index[hinge.second]
-            tested[:whole, :whole] &= ~(np.outer(one, other) | np.outer(other, one))
+            tested[:whole, :whole] &= ~(one[:, None] & other | other[:, None] & one)
     for first, piece in cuts:
         tested[:whole, piece] = body[:whole] == first
     return _Pieces(stacked(boxes), body, tested)
@@ -117,9 +117,7 @@ def _at_start(folding: Folding, tree: Tree, pieces: _Pieces) -> Iterator[Meeting
     yield from _met(folding, pieces, spans, depth, spans.start)
 
 
-def _within(
-    folding: Folding, tree: Tree, pieces: _Pieces, times: Array
-) -> Iterator[Meeting]:
+def _within(folding: Folding, tree: Tree, pieces: _Pieces, times: Array) -> Iterator[Meeting]:
     """What meets between some moments (k,)."""
     spans = _close(folding, tree, pieces, times)
     for _ in range(DEPTH + 1):
@@ -158,9 +156,7 @@ def _close(folding: Folding, tree: Tree, pieces: _Pieces, times: Array) -> _Span
     group = _moving_alike(poses)[pieces.body]
     tested = pieces.tested & (group[:, None] != group[None])
     first, second = np.nonzero(tested & _near(low.min(0), high.max(0)))
-    near = np.logical_and.reduce(
-        [(low[:, a, i] <= high[:, b, i]) for i in range(3) for a, b in ((first, second), (second, first))]
-    )
+    near = np.all(low[:, first] <= high[:, second], axis=-1) & np.all(low[:, second] <= high[:, first], axis=-1)
     at, pair = np.nonzero(near)
     return _Spans(times[at], times[at + 1], first[pair], second[pair])
 
@@ -176,8 +172,8 @@ def _moving_alike(poses: Poses) -> Indices:
 
 def _near(low: Array, high: Array) -> Bools:
     """(n, n) whether bounds (n, 3) overlap."""
-    below: Bools = (low[:, None] <= high[None]).all(-1)
-    return below & below.T
+    below = np.all(low[:, None] <= high[None], axis=-1)
+    return np.asarray(below & below.T)
 
 
 def _is_safe(own: Boxes, posed: list[Boxes], axes: list[Array]) -> Bools:
@@ -237,9 +233,7 @@ def _relative(pieces: _Pieces, spans: _Spans, poses: Poses, at: Indices) -> Boxe
     return Boxes(center, np.einsum("nij,nkj->nki", turn, boxes.axes), boxes.half)
 
 
-def _met(
-    folding: Folding, pieces: _Pieces, spans: _Spans, apart: Array, time: Array
-) -> Iterator[Meeting]:
+def _met(folding: Folding, pieces: _Pieces, spans: _Spans, apart: Array, time: Array) -> Iterator[Meeting]:
     """The pairs that share more than a touch."""
     names = [body.name for body in folding.linkage.bodies]
     for i in np.nonzero(apart < -TOUCH)[0]:

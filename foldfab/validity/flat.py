@@ -5,8 +5,8 @@ in the order of the steps. Within a unit a press comes down and takes each base 
 higher ones start first (figure 11a). A chain in place follows its bases exactly; where it leans at first it is one
 long panel against the others, which turn in line until they stand upright and in a zig-zag from there.
 
-Bases of parts at several heights are no patches in the paper's sense; they keep their height here, and what a chain
-beside them lacks then is a plinth.
+Bases of parts at several heights are no patches in the paper's sense: their parts are laid into one plane, the lowest,
+and what stands on them reaches down to it. Plinths are a matter of thickness, so that there are none.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ import numpy as np
 from foldfab.folding.model import Chain, FoldSolution, Modification, Step
 from foldfab.geometry.arrays import Array
 from foldfab.geometry.boxes import Boxes, stacked
-from foldfab.scaffold.model import BasePatch, Patch
-from foldfab.validity.claim import angles_of, axes_of, frame, hinges_of, root_first, step_of
+from foldfab.scaffold.model import BasePatch
+from foldfab.validity.claim import angles_of, apart, axes_of, frame, hinges_of, root_first, step_of
 from foldfab.validity.model import Body, Folding, Hinge, Linkage, no_slip
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -53,8 +53,8 @@ class Strip:
 def folding(solution: FoldSolution) -> Folding:
     """The folding transform of the same modifications without thickness."""
     down = {step.unit: ways(solution, step) for step in solution.steps}
-    strips = [_strip(solution, chain, down) for chain in solution.chains]
-    bodies = [Body(base.name, _sheet(base, strips), UP, is_base=True) for base in solution.scaffold.bases]
+    strips = [_strip(solution, chain) for chain in solution.chains]
+    bodies = [Body(base.name, _sheet(base), UP, is_base=True) for base in solution.scaffold.bases]
     hinges: list[Hinge] = []
     for strip in strips:
         points = axes_of(strip.root, strip.chain, strip.lengths, np.zeros(len(strip.lengths) + 1), strip.lean)
@@ -66,23 +66,16 @@ def folding(solution: FoldSolution) -> Folding:
         return np.concatenate([np.zeros((len(times), 0)), *made], axis=1)
 
     linkage = Linkage(root_first(solution, bodies), tuple(hinges))
-    where = np.unique(np.concatenate([[0.0, 1.0], *(_moments(s, down[s.unit]) for s in solution.steps)]))
-    where = where[np.append(True, np.diff(where) > 1e-12)]
+    where = apart(np.concatenate([[0.0, 1.0], *(_moments(s, down[s.unit]) for s in solution.steps)]))
     return Folding("without thickness", linkage, where, angles, lambda times: no_slip(times, len(hinges)))
 
 
 def ways(solution: FoldSolution, step: Step) -> dict[str, float]:
-    """How far each base of a unit comes down until nothing is between it and what is below, mm.
-
-    A base with nothing of the unit below comes down to the lowest one.
-    """
+    """How far each base of a unit comes down until all lie in the plane of the lowest one, mm."""
     held = [chain for chain in solution.chains if chain.patch in step.fold and chain.far is not None]
-    found: dict[str, float] = {}
-    own = [b for b in solution.scaffold.bases if any(b.name in (c.anchor, c.far) for c in held)]
-    for base in own:
-        below = [found[c.anchor] + _clear(solution, c) for c in held if c.far == base.name and c.anchor in found]
-        found[base.name] = max(min(below, default=base.top - own[0].top), 0.0)
-    return found
+    own = {base for chain in held for base in (chain.anchor, chain.far)}
+    height = {base.name: base.bottom for base in solution.scaffold.bases if base.name in own}
+    return {name: z - min(height.values()) for name, z in height.items()}
 
 
 def tilts(strip: Strip, down: Mapping[str, float], times: Array) -> Array:
@@ -150,16 +143,14 @@ def _moments(step: Step, down: Mapping[str, float]) -> Array:
     return step.start + (step.end - step.start) * np.arange(count + 1) / count
 
 
-def _strip(solution: FoldSolution, chain: Chain, down: Mapping[str, Mapping[str, float]]) -> Strip:
+def _strip(solution: FoldSolution, chain: Chain) -> Strip:
     patch, step = solution.scaffold.patch(chain.patch), step_of(solution, chain.patch)
     change = solution.modification(chain.patch)
-    face = _face(solution.scaffold.base(chain.anchor), patch)
-    root = patch.center + patch.up * (face - patch.center[2]) / patch.up[2]
+    plane = solution.scaffold.base(chain.anchor).bottom
+    root = patch.center + patch.up * (plane - patch.center[2]) / patch.up[2]
     up = patch.up * np.sign(patch.up @ chain.rise)
     lean = float(np.arctan2(up @ chain.across, up @ chain.rise))
     clear = _clear(solution, chain)
-    if chain.far is not None and change.mechanism == "in-place":
-        clear = min(clear, down[step.unit][chain.far] - down[step.unit][chain.anchor])
     side = 1.0 if change.side == "r" else -1.0
     lengths = _intervals(clear / np.cos(lean), lean, side, change, ends_free=chain.far is None)
     return Strip(chain, step, root, lean, side, change.mechanism == "slanted", lengths, clear)
@@ -174,32 +165,23 @@ def _intervals(length: float, lean: float, side: float, change: Modification, *,
     return lengths
 
 
-def _face(base: BasePatch, patch: Patch) -> float:
-    """The height at which a patch meets its base, mm."""
-    return base.bottom if patch.upper == base.name else base.top
-
-
 def _clear(solution: FoldSolution, chain: Chain) -> float:
     """Height from a chain's anchor to its far base or its tip in the open posture, mm."""
     patch = solution.scaffold.patch(chain.patch)
-    start = _face(solution.scaffold.base(chain.anchor), patch)
+    start = solution.scaffold.base(chain.anchor).bottom
     if chain.far is not None:
-        return abs(_face(solution.scaffold.base(chain.far), patch) - start)
+        return abs(solution.scaffold.base(chain.far).bottom - start)
     tip = patch.center[2] + np.sign(chain.rise[2]) * abs(patch.up[2]) * patch.length / 2
     return abs(float(tip) - start)
 
 
-def _sheet(base: BasePatch, strips: list[Strip]) -> Boxes:
-    """The outlines of a base at its height."""
+def _sheet(base: BasePatch) -> Boxes:
+    """The outlines of a base in its plane."""
     made = []
     for outline in base.outlines:
-        low, high = base.bottom, base.top
-        if outline.extent is not None:
-            low = high = float(np.clip(sum(outline.extent) / 2, low, high))
         along = np.array([*outline.along, 0.0])
         axes = np.stack([along, np.cross(UP, along), UP])
-        half = np.array([[*outline.half, (high - low) / 2]])
-        made.append(Boxes(np.array([[*outline.center, (low + high) / 2]]), axes[None], half))
+        made.append(Boxes(np.array([[*outline.center, base.bottom]]), axes[None], np.array([[*outline.half, 0.0]])))
     return stacked(made)
 
 

@@ -29,7 +29,8 @@ def contradictions(solution: FoldSolution) -> tuple[Violation, ...]:
             for amount, told in _of_chain(solution, chain, changes[chain.patch], patches[chain.patch]):
                 found.append((chain.patch, amount, told))
     return tuple(
-        Violation("start", "", 0.0, (patch,), float(amount), f"at t = 0: {patch} {told}") for patch, amount, told in found
+        Violation("start", "", 0.0, (patch,), float(amount), f"at t = 0: {patch} {told}")
+        for patch, amount, told in found
     )
 
 
@@ -67,9 +68,7 @@ def _of_steps(solution: FoldSolution) -> Iterator[tuple[str, float, str]]:
             yield chain.patch, 0.0, f"folds in {times} steps instead of one"
 
 
-def _of_chain(
-    solution: FoldSolution, chain: Chain, change: Modification, patch: Patch
-) -> Iterator[tuple[float, str]]:
+def _of_chain(solution: FoldSolution, chain: Chain, change: Modification, patch: Patch) -> Iterator[tuple[float, str]]:
     """A chain is its modified patch."""
     count, is_t = len(chain.lengths) - 1, chain.far is None
     if (chain.mechanism, count) != (change.mechanism, change.hinges):
@@ -117,9 +116,7 @@ def _of_place(solution: FoldSolution, chain: Chain, patch: Patch) -> Iterator[tu
             yield abs(height - wanted), f"ends {abs(height - wanted):.2f} mm off its place {where}"
 
 
-def _axis_height(
-    solution: FoldSolution, base: str | None, chain: Chain, patch: Patch, out: float, pad: float
-) -> float:
+def _axis_height(solution: FoldSolution, base: str | None, chain: Chain, patch: Patch, out: float, pad: float) -> float:
     """Where a hinge axis on that base belongs, or the tip of a T, mm."""
     if base is None:
         return float(patch.center[2] - out * abs(patch.up[2]) * patch.length / 2)

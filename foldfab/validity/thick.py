@@ -110,9 +110,7 @@ def _mount(chain: Chain, thick: Thickness, axis: Array, out: Array, pad: float, 
     return [*foot, _upright(chain, thick, axis, out, low, -thick.axis_height, chain.span)] if pad > 0 else foot
 
 
-def _upright(
-    chain: Chain, thick: Thickness, axis: Array, out: Array, low: float, high: float, span: Array
-) -> Boxes:
+def _upright(chain: Chain, thick: Thickness, axis: Array, out: Array, low: float, high: float, span: Array) -> Boxes:
     """A block K wide below or above an axis, heights measured along `out`."""
     center = axis + out * (low + high) / 2 + chain.along * float(np.mean(span))
     half = np.array([[thick.panel / 2, float(np.ptp(span)) / 2, abs(high - low) / 2]])

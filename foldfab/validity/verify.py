@@ -49,7 +49,7 @@ def verdict(solution: FoldSolution) -> Verdict:
     for folding in foldings:
         found += judged(folding)
     if not found:
-        found += _heights(solution, foldings[1])
+        found += _heights(foldings[1])
     found.sort(key=lambda v: (get_args(Kind).index(v.kind), v.time, v.model, v.parts))
     closing = len(spanning_tree(foldings[0].linkage).closing)
     return Verdict(sum(len(f.moments) for f in foldings), closing, tuple(found))
@@ -153,14 +153,14 @@ def _overstrained(solution: FoldSolution) -> Iterator[Violation]:
             yield Violation("hinge", "with thickness", time, (chain.patch,), worst, told)
 
 
-def _heights(solution: FoldSolution, folding: Folding) -> Iterator[Violation]:
-    """Without thickness all patches end in one plane, up to what bases of parts at several heights measure."""
+def _heights(folding: Folding) -> Iterator[Violation]:
+    """Without thickness all patches end in one plane."""
     tree = spanning_tree(folding.linkage)
     end = folding.moments[-1:]
     poses = arranged(folding.linkage, tree, folding.angles(end), folding.slips(end))
     own = [body.pieces.center @ poses.turn[0, b].T + poses.place[0, b] for b, body in enumerate(folding.linkage.bodies)]
     heights = np.concatenate([points[:, 2] for points in own])
-    spread = float(np.ptp(heights)) - sum(base.top - base.bottom for base in solution.scaffold.bases)
+    spread = float(np.ptp(heights))
     if spread > CLOSES:
         names = tuple(folding.linkage.bodies[int(i)].name for i in _extremes(own))
         yield _violation(folding, "flat", 1.0, names, spread, f"{names[1]} ends {spread:.2f} mm above {names[0]}")

@@ -115,8 +115,8 @@ def _fold(arguments: argparse.Namespace) -> int:
     if arguments.json:
         _print_json(report.fold_facts(solution, milliseconds) | (report.verdict_facts(verdict) if verdict else {}))
     else:
-        print(report.fold_table(solution, milliseconds))
-        print(f"\n{report.judgement(verdict)}" if verdict else "", end="\n" if verdict else "")
+        judgement = f"\n\n{report.judgement(verdict)}" if verdict else ""
+        print(report.fold_table(solution, milliseconds) + judgement)
     return 1 if verdict and verdict.violations else 0
 
 

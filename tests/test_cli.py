@@ -16,6 +16,7 @@ import foldfab
 from foldfab import cli, report
 from foldfab.errors import FoldingError, Problem, RecipeError
 from foldfab.fabrication.model import Finding
+from foldfab.validity.model import Verdict, Violation
 
 WRONG = RecipeError("bench.json", (Problem("parts", "is missing"),))
 
@@ -29,7 +30,8 @@ class Pipeline(types.ModuleType):
         self.fails: dict[str, BaseException] = {}
         self.findings: tuple[Finding, ...] = ()
         self.rows: tuple[Any, ...] = ()
-        for name in ("load", "foldabilize", "fabricate", "write", "check", "shipped"):
+        self.violations: tuple[Violation, ...] = ()
+        for name in ("load", "foldabilize", "fabricate", "examine", "write", "check", "shipped"):
             setattr(self, name, self._verb(name))
         self.prepare = lambda: None
 
@@ -48,6 +50,7 @@ class Pipeline(types.ModuleType):
             "fabricate": types.SimpleNamespace(findings=self.findings),
             "check": types.SimpleNamespace(rows=self.rows, ok=all(row.ok for row in self.rows)),
             "shipped": (Path("bench.json"),),
+            "examine": Verdict(120, 3, self.violations),
         }.get(name)
 
     def names(self) -> list[str]:
@@ -112,6 +115,32 @@ def test_fold(pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["fold", "bench"]) == 0
     assert cli.main(["fold", "bench", "--json"]) == 0
     assert capsys.readouterr().out == 'table\n{\n "status": "folded"\n}\n'
+
+
+def test_fold_verified(pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["fold", "bench", "--verify"]) == 0
+    told = "valid: 120 moments, 3 hinges beyond the spanning tree, with and without thickness"
+    assert capsys.readouterr().out == f"table\n\n{told}\n"
+    assert cli.main(["fold", "bench", "--verify", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == {"status": "folded", "valid": True, "violations": []}
+
+
+def test_fold_found_invalid(pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None:
+    text = "with thickness, at t = 0.500: seat and back share up to 1.00 mm"
+    pipeline.violations = (Violation("collision", "with thickness", 0.5, ("seat", "back"), 1.0, text),)
+    assert cli.main(["fold", "bench", "--verify"]) == 1
+    assert capsys.readouterr().out == f"table\n\nnot valid\n  {text}\n"
+    assert cli.main(["fold", "bench", "--verify", "--json"]) == 1
+    facts = json.loads(capsys.readouterr().out)
+    assert facts["valid"] is False
+    assert facts["violations"][0] == {
+        "kind": "collision",
+        "model": "with thickness",
+        "time": 0.5,
+        "parts": ["seat", "back"],
+        "amount": 1.0,
+        "text": text,
+    }
 
 
 def test_refused(pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None:

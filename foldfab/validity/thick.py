@@ -41,7 +41,9 @@ def folding(solution: FoldSolution) -> Folding:
         bodies += _panels(chain, thick, points)
 
     def angles(times: Array) -> Array:
-        made = [angles_of(c, tilts(c, _progress(solution, c, times)), c.lean) for c in solution.chains]
+        # A chain whose lengths cannot close has no angles: not a number, which the verb tells.
+        with np.errstate(invalid="ignore"):
+            made = [angles_of(c, tilts(c, _progress(solution, c, times)), c.lean) for c in solution.chains]
         return np.concatenate([np.zeros((len(times), 0)), *made], axis=1)
 
     def slips(times: Array) -> Array:

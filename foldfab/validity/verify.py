@@ -60,6 +60,8 @@ def judged(folding: Folding) -> list[Violation]:
     tree = spanning_tree(folding.linkage)
     times = np.unique(np.concatenate([folding.moments, (folding.moments[1:] + folding.moments[:-1]) / 2]))
     angles, slips = folding.angles(times), folding.slips(times)
+    if not np.isfinite(angles).all():
+        return list(_impossible(folding, times, angles))
     poses = arranged(folding.linkage, tree, angles, slips)
     found = [*_adrift(folding, tree), *_not_open(folding, angles[0]), *_not_flat(folding, poses)]
     found += [*_broken(folding, tree, times, angles, slips, poses), *_elsewhere(folding, tree, times, poses)]
@@ -74,6 +76,15 @@ def _violation(
 ) -> Violation:
     text = f"{folding.model}, at t = {time:.3f}: {told}"
     return Violation(kind, folding.model, float(time), parts, float(amount), text)
+
+
+def _impossible(folding: Folding, times: Array, angles: Array) -> Iterator[Violation]:
+    """Hinges for which no angle exists at some moment: a linkage that cannot reach as far as it should."""
+    for h, hinge in enumerate(folding.linkage.hinges):
+        bad = np.nonzero(~np.isfinite(angles[:, h]))[0]
+        if len(bad):
+            told = f"no angle closes the hinge of {hinge.first} and {hinge.second}"
+            yield _violation(folding, "hinge", times[bad[0]], (hinge.first, hinge.second), 0.0, told)
 
 
 def _adrift(folding: Folding, tree: Tree) -> Iterator[Violation]:

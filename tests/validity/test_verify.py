@@ -15,6 +15,7 @@ import pytest
 import foldfab
 from foldfab.folding.model import Chain, FoldSolution
 from foldfab.geometry.arrays import Array
+from foldfab.validity import thick
 from foldfab.validity.model import Body, Folding, Hinge, Linkage
 from foldfab.validity.verify import judged, verdict, violations
 
@@ -175,6 +176,15 @@ def test_a_base_that_is_said_to_be_elsewhere(solution: Solutions) -> None:
     travel = {base: 1.01 * way for base, way in good.steps[0].travel.items()}
     (found,) = violations(with_step(good, 0, travel=travel))
     assert found.kind == "hinge" and found.parts == ("ceiling",)
+
+
+def test_a_chain_that_cannot_close(solution: Solutions) -> None:
+    good = solution("slanted_h", slanting=False)
+    spoilt = with_chain(good, "leg", **turned(good.chain("leg")))
+    found = judged(thick.folding(spoilt))
+    assert {v.kind for v in found} == {"hinge"}
+    assert "no angle closes the hinge of" in found[0].text
+    assert kinds(spoilt) == {"start"}
 
 
 def test_too_much_play(solution: Solutions) -> None:

@@ -115,15 +115,21 @@ def _fold(arguments: argparse.Namespace) -> int:
             return 1
         raise
     milliseconds = 1000 * (time.perf_counter() - start)
+    progress("trying it out")
+    verdicts = [pipeline.examine(solution) for solution in solutions] if arguments.verify else []
     progress.done()
     if arguments.json:
         ranked = report.alternatives_facts(solutions, milliseconds) if count else None
-        _print_json(ranked or report.fold_facts(solutions[0], milliseconds))
-    elif count:
-        print(report.alternatives_table(solutions, milliseconds))
+        facts = ranked or report.fold_facts(solutions[0], milliseconds)
+        _print_json(facts | (report.verdict_facts(*verdicts) if verdicts else {}))
     else:
-        print(report.fold_table(solutions[0], milliseconds))
-    return 0
+        told = (
+            report.alternatives_table(solutions, milliseconds)
+            if count
+            else report.fold_table(solutions[0], milliseconds)
+        )
+        print("\n\n".join([told, *map(report.judgement, verdicts)]))
+    return 1 if any(verdict.violations for verdict in verdicts) else 0
 
 
 def _check(arguments: argparse.Namespace) -> int:
@@ -202,6 +208,9 @@ def _parser() -> argparse.ArgumentParser:
     folding.add_argument("--json", action="store_true", help="print the facts as JSON")
     how_many = f"show the best K folds, 1 to {MOST_ALTERNATIVES}, and how they differ"
     folding.add_argument("--alternatives", metavar="K", type=_how_many, help=how_many)
+    folding.add_argument(
+        "--verify", action="store_true", help="try the fold out at every moment, apart from the search"
+    )
     for command, quiet in ((making, "show no progress and no summary"), (folding, "show no progress")):
         command.add_argument("recipe", metavar="RECIPE", help="a .json file, or the name of a shipped recipe")
         command.add_argument("-q", "--quiet", action="store_true", help=quiet)

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from foldfab.fabrication.model import Assembly
     from foldfab.folding.model import FoldSolution
     from foldfab.scaffold.model import Scaffold
+    from foldfab.validity.model import Verdict, Violation
 
 Progress = Callable[[str], None]
 """Called with what is being done, one short line."""
@@ -109,6 +110,21 @@ def alternatives(recipe: Recipe, count: int) -> tuple[FoldSolution, ...]:
     # Not `best` itself, which may be disconnected where parts must not be split.
     found: tuple[FoldSolution, ...] = ranked(_abstracted(recipe, best.direction, best.scale), count)
     return found
+
+
+def verify(solution: FoldSolution) -> tuple[Violation, ...]:
+    """Why a solution is not valid in the sense of section 4, with thickness and without; empty where it is.
+
+    Found from the solution alone, apart from the search.
+    """
+    return examine(solution).violations
+
+
+def examine(solution: FoldSolution) -> Verdict:
+    """The same, with what was looked at."""
+    from foldfab.validity.verify import verdict
+
+    return verdict(solution)
 
 
 def fabricate(solution: FoldSolution, *, posture: Posture | None = None, progress: Progress | None = None) -> Assembly:

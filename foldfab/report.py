@@ -11,6 +11,7 @@ import numpy as np
 from foldfab.fabrication.model import Assembly
 from foldfab.folding.model import FoldSolution, Modification
 from foldfab.geometry.arrays import Array
+from foldfab.validity.model import Verdict
 
 WINDOW = 1e-9
 """How far a window may be from [0, 1] and still be the whole width."""
@@ -110,6 +111,31 @@ def cost_and_gap(solution: FoldSolution) -> str:
     if is_proven(solution):
         return f"{solution.cost:.4f}, proven least"
     return f"{solution.cost:.4f}, no less than {solution.lower_bound:.4f} (gap {100 * gap(solution):.1f} %)"
+
+
+def judgement(verdict: Verdict) -> str:
+    """Whether a fold is valid: one line, or one for each violation."""
+    if verdict.violations:
+        return "\n".join(["not valid", *(f"  {violation.text}" for violation in verdict.violations)])
+    closing = _count(verdict.closing, "hinge")
+    return f"valid: {verdict.moments} moments, {closing} beyond the spanning tree, with and without thickness"
+
+
+def verdict_facts(*verdicts: Verdict) -> dict[str, Any]:
+    """The same as JSON data, of one or more solutions."""
+    told = [
+        {
+            "kind": violation.kind,
+            "model": violation.model,
+            "time": violation.time,
+            "parts": list(violation.parts),
+            "amount": violation.amount,
+            "text": violation.text,
+        }
+        for verdict in verdicts
+        for violation in verdict.violations
+    ]
+    return {"valid": not told, "violations": told}
 
 
 def change(modification: Modification) -> str:

@@ -16,6 +16,7 @@ import foldfab
 from foldfab import cli, report
 from foldfab.errors import FoldingError, Problem, RecipeError
 from foldfab.fabrication.model import Finding
+from foldfab.validity.model import Verdict, Violation
 
 WRONG = RecipeError("bench.json", (Problem("parts", "is missing"),))
 
@@ -29,11 +30,13 @@ class Pipeline(types.ModuleType):
         self.fails: dict[str, BaseException] = {}
         self.findings: tuple[Finding, ...] = ()
         self.rows: tuple[Any, ...] = ()
+        self.violations: tuple[Violation, ...] = ()
         for name in (
             "load",
             "foldabilize",
             "alternatives",
             "fabricate",
+            "examine",
             "write",
             "check",
             "shipped",
@@ -60,6 +63,7 @@ class Pipeline(types.ModuleType):
             "check": types.SimpleNamespace(rows=self.rows, ok=all(row.ok for row in self.rows)),
             "shipped": (Path("bench.json"),),
             "compose": types.SimpleNamespace(name="bench-4x4", parts=("seat", "back")),
+            "examine": Verdict(120, 3, self.violations),
         }.get(name)
 
     def names(self) -> list[str]:
@@ -148,6 +152,32 @@ def test_what_cannot_be_composed(capsys: pytest.CaptureFixture[str]) -> None:
     assert out == ""
     assert "kind: should be one of bench, building, hexagon, shelf" in err
     assert "grid: should have 1 to 32 columns" in err
+
+
+def test_fold_verified(pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["fold", "bench", "--verify"]) == 0
+    told = "valid: 120 moments, 3 hinges beyond the spanning tree, with and without thickness"
+    assert capsys.readouterr().out == f"table\n\n{told}\n"
+    assert cli.main(["fold", "bench", "--verify", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == {"status": "folded", "valid": True, "violations": []}
+
+
+def test_fold_found_invalid(pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None:
+    text = "with thickness, at t = 0.500: seat and back share up to 1.00 mm"
+    pipeline.violations = (Violation("collision", "with thickness", 0.5, ("seat", "back"), 1.0, text),)
+    assert cli.main(["fold", "bench", "--verify"]) == 1
+    assert capsys.readouterr().out == f"table\n\nnot valid\n  {text}\n"
+    assert cli.main(["fold", "bench", "--verify", "--json"]) == 1
+    facts = json.loads(capsys.readouterr().out)
+    assert facts["valid"] is False
+    assert facts["violations"][0] == {
+        "kind": "collision",
+        "model": "with thickness",
+        "time": 0.5,
+        "parts": ["seat", "back"],
+        "amount": 1.0,
+        "text": text,
+    }
 
 
 def test_refused(pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None:

@@ -210,7 +210,7 @@ def _instants(assembly: Assembly) -> Array:
 
 def _sections(travel: dict[str, Array]) -> int:
     """How many different base motions a step has: stages of a press, at least one."""
-    return max(1, min(4, len({round(float(np.abs(way[-1]).sum()), 3) for way in travel.values()}) - 1))
+    return max(1, min(4, len({round(float(np.abs(way[-1]).sum()), 3) for way in travel.values()})))
 
 
 def _near(a: tuple[Array, Array], b: tuple[Array, Array], gap: float) -> bool:

@@ -161,7 +161,9 @@ def _fill(table: Bools, place: Indices, a: Boxes, cuts_a: Array, b: Boxes, cuts_
     sign = np.sign(cosine)[:, None]
     low, high = np.minimum(sign * low_b, sign * high_b), np.maximum(sign * low_b, sign * high_b)
     real: Bools = (high_a > low_a)[:, :, None] & (high_b > low_b)[:, None]
-    row, s, t = np.nonzero(real & same[:, None, None] & (low_a[:, :, None] < high[:, None]) & (low[:, None] < high_a[:, :, None]))
+    row, s, t = np.nonzero(
+        real & same[:, None, None] & (low_a[:, :, None] < high[:, None]) & (low[:, None] < high_a[:, :, None])
+    )
     table[place[row], s, t] = True
     rest = np.nonzero(~same)[0]
     if len(rest):

@@ -22,6 +22,7 @@ from foldfab.folding.surroundings import depends_on, look
 from foldfab.folding.unit_fold import Refusal, UnitFold, fold_seen, fold_unit, least_weight
 from foldfab.folding.units import Unit, merged
 from foldfab.geometry.arrays import Array
+from foldfab.geometry.boxes import near_pairs
 
 REFUSED = 1e3
 """What a unit that cannot fold counts in the look-ahead: more than any cost."""
@@ -46,8 +47,12 @@ class _State:
     floor: Mapping[str, float]
     """By unit, what it costs at least."""
     rest: dict[str, Unit]
+    beside: Mapping[str, set[str]]
+    """By unit, those whose folds reach into the space of its own."""
     now: dict[str, UnitFold | Refusal] = field(default_factory=dict)
     """What each remaining unit would do now."""
+    keys: dict[str, object] = field(default_factory=dict)
+    """By remaining unit, what it saw when that was found."""
     sees: dict[str, set[str]] = field(default_factory=dict)
     """By remaining unit, those whose folding may change what it does."""
     seen_by: dict[str, set[str]] = field(default_factory=dict)
@@ -66,7 +71,7 @@ def tight_floors(problem: Problem, scene: Scene) -> dict[str, float]:
 
 def greedy(problem: Problem, scene: Scene, floor: Mapping[str, float]) -> Ordered:
     """Folds all units of the open scene one after another; `floor` is what each costs at least."""
-    state = _State(problem, scene, floor, {u.name: u for u in problem.units})
+    state = _State(problem, scene, floor, {u.name: u for u in problem.units}, _beside(problem))
     for unit in problem.units:
         _look_again(state, unit)
     folds: list[UnitFold] = []
@@ -74,6 +79,9 @@ def greedy(problem: Problem, scene: Scene, floor: Mapping[str, float]) -> Ordere
         best = _best(state)
         if best is None:
             return _merged(state, folds)
+        if not _still_holds(state, best):
+            continue
+        best = _final(state, best)
         folds.append(best)
         state.scene = after(problem, state.scene, best)
         del state.rest[best.unit.name]
@@ -107,11 +115,33 @@ def _look_again(state: _State, unit: Unit) -> None:
     own = repertoire(state.problem, unit)
     around = look(state.problem, state.scene, own)
     state.now[unit.name] = fold_seen(state.problem, state.scene, own, around)
+    state.keys[unit.name] = around.key
     for name in state.sees.get(unit.name, ()):
         state.seen_by[name].discard(unit.name)
-    state.sees[unit.name] = depends_on(state.problem, unit, around)
+    state.sees[unit.name] = depends_on(state.problem, unit, around) | state.beside[unit.name]
     for name in state.sees[unit.name]:
         state.seen_by.setdefault(name, set()).add(unit.name)
+
+
+def _still_holds(state: _State, fold: UnitFold) -> bool:
+    """Whether the unit sees what it saw when its fold was found; where something has come near since, it looks again."""
+    unit = fold.unit
+    if look(state.problem, state.scene, repertoire(state.problem, unit)).key == state.keys[unit.name]:
+        return True
+    _look_again(state, unit)
+    return False
+
+
+def _beside(problem: Problem) -> dict[str, set[str]]:
+    names = [u.name for u in problem.units]
+    lanes = [repertoire(problem, u).lanes for u in problem.units]
+    low = np.array([np.min([x.low for x in many], 0) if many else np.full(3, np.inf) for many in lanes])
+    high = np.array([np.max([x.high for x in many], 0) if many else np.full(3, -np.inf) for many in lanes])
+    found: dict[str, set[str]] = {name: set() for name in names}
+    for i, j in zip(*near_pairs((low, high), (low, high)), strict=True):
+        if i != j:
+            found[names[i]].add(names[j])
+    return found
 
 
 def _best(state: _State) -> UnitFold | None:
@@ -129,7 +159,7 @@ def _best(state: _State) -> UnitFold | None:
             break
         change = round(_change(state, able[name]), DIGITS)
         best = min(best, (change, name)) if best is not None else (change, name)
-    return _final(state, able[best[1]]) if best is not None else None
+    return able[best[1]] if best is not None else None
 
 
 def _change(state: _State, fold: UnitFold) -> float:

@@ -95,8 +95,10 @@ def held_up(problem: Problem, unit: Unit, limits: Limits) -> str:
         assert site.far is not None
         pair = (site.anchor, site.far)
         least = problem.thickness.stack(2, has_upper_base=True)
-        if limits[pair][1] < clear_height(problem, *pair) - least - NEARLY * problem.thickness.panel:
-            return limits[pair][2]
+        # A base whose parts lie at several heights may reach below the one that carries the chain: that pair has no limit.
+        _, raised, owner = limits.get(pair, (np.inf, np.inf, ""))
+        if raised < clear_height(problem, *pair) - least - NEARLY * problem.thickness.panel:
+            return owner
     return ""
 
 

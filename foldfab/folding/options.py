@@ -39,11 +39,21 @@ class Options:
     windows: tuple[tuple[int, int], ...]
 
     def __getitem__(self, index: int) -> Option:
-        price = float(self.price[index])
+        place, price = self.place(index), float(self.price[index])
+        return Option(place[0].variant, place[1], price) if place is not None else Option(None, (0, 0), price)
+
+    def place(self, index: int) -> tuple[Lane, tuple[int, int]] | None:
+        """The lane and the window of an option; None where it deletes the patch."""
         if index == len(self.price) - 1:
-            return Option(None, (0, 0), price)
+            return None
         lane, window = divmod(index, len(self.windows))
-        return Option(self.lanes[lane].variant, self.windows[window], price)
+        return self.lanes[lane], self.windows[window]
+
+    def index(self, place: tuple[Lane, tuple[int, int]] | None) -> int:
+        """The option of a lane and a window."""
+        if place is None:
+            return len(self.price) - 1
+        return self.lanes.index(place[0]) * len(self.windows) + self.windows.index(place[1])
 
     def like(self, index: int, *, wider: bool) -> list[int]:
         """The options of the same lane, of any window, or of windows at least as wide that hold this one's."""

@@ -18,8 +18,17 @@ import numpy as np
 from foldfab.folding.problem import Problem
 from foldfab.folding.repertoire import repertoire
 from foldfab.folding.scene import Scene, advanced, alone
-from foldfab.folding.surroundings import depends_on, look
-from foldfab.folding.unit_fold import Refusal, UnitFold, fold_seen, fold_unit, least_weight
+from foldfab.folding.surroundings import Surroundings, depends_on, look
+from foldfab.folding.unit_fold import (
+    Choice,
+    Refusal,
+    UnitFold,
+    fold_seen,
+    fold_unit,
+    has_room,
+    is_solved,
+    least_choice,
+)
 from foldfab.folding.units import Unit, merged
 from foldfab.geometry.arrays import Array
 from foldfab.geometry.boxes import near_pairs
@@ -44,24 +53,22 @@ class _State:
 
     problem: Problem
     scene: Scene
-    floor: Mapping[str, float]
-    """By unit, what it costs at least."""
-    rest: dict[str, Unit]
+    floor: Mapping[str, Choice]
+    """By unit, its cheapest choice without conflicts."""
     beside: Mapping[str, set[str]]
     """By unit, those whose folds reach into the space of its own."""
-    now: dict[str, UnitFold | Refusal] = field(default_factory=dict)
-    """What each remaining unit would do now."""
-    keys: dict[str, object] = field(default_factory=dict)
-    """By remaining unit, what it saw when that was found."""
+    rest: dict[str, Unit]
+    guess: dict[str, float] = field(default_factory=dict)
+    """By remaining unit, what folding it now would count: exact, or at least not too much."""
     sees: dict[str, set[str]] = field(default_factory=dict)
-    """By remaining unit, those whose folding may change what it does."""
+    """By remaining unit, those whose folding may change that."""
     seen_by: dict[str, set[str]] = field(default_factory=dict)
     """The same the other way round."""
 
 
-def floors(problem: Problem) -> dict[str, float]:
-    """By unit, what its cheapest choice without conflicts counts in the search, whatever stands around it."""
-    return {u.name: least_weight(problem, repertoire(problem, u)) for u in problem.units}
+def floors(problem: Problem) -> dict[str, Choice]:
+    """By unit, its cheapest choice without conflicts, whatever stands around it: no order lets it fold for less."""
+    return {u.name: least_choice(problem, repertoire(problem, u)) for u in problem.units}
 
 
 def tight_floors(problem: Problem, scene: Scene) -> dict[str, float]:
@@ -69,25 +76,25 @@ def tight_floors(problem: Problem, scene: Scene) -> dict[str, float]:
     return {u.name: _weight(fold_unit(problem, alone(scene, u), u)) for u in problem.units}
 
 
-def greedy(problem: Problem, scene: Scene, floor: Mapping[str, float]) -> Ordered:
-    """Folds all units of the open scene one after another; `floor` is what each costs at least."""
-    state = _State(problem, scene, floor, {u.name: u for u in problem.units}, _beside(problem))
+def greedy(problem: Problem, scene: Scene, floor: Mapping[str, Choice]) -> Ordered:
+    """Folds all units of the open scene one after another; `floor` is the cheapest choice of each."""
+    state = _State(problem, scene, floor, _beside(problem), {u.name: u for u in problem.units})
     for unit in problem.units:
         _look_again(state, unit)
     folds: list[UnitFold] = []
     while state.rest:
-        best = _best(state)
-        if best is None:
+        name = _best(state)
+        if name is None:
             return _merged(state, folds)
-        if not _still_holds(state, best):
+        best = _folded(state, name)
+        if best is None:
             continue
-        best = _final(state, best)
         folds.append(best)
         state.scene = after(problem, state.scene, best)
-        del state.rest[best.unit.name]
-        for name in sorted(state.seen_by.get(best.unit.name, ())):
-            if name in state.rest:
-                _look_again(state, state.rest[name])
+        del state.rest[name]
+        for other in sorted(state.seen_by.get(name, ())):
+            if other in state.rest:
+                _look_again(state, state.rest[other])
     return Ordered(tuple(folds), ())
 
 
@@ -114,8 +121,7 @@ def _weight(fold: UnitFold | Refusal) -> float:
 def _look_again(state: _State, unit: Unit) -> None:
     own = repertoire(state.problem, unit)
     around = look(state.problem, state.scene, own)
-    state.now[unit.name] = fold_seen(state.problem, state.scene, own, around)
-    state.keys[unit.name] = around.key
+    state.guess[unit.name] = _guessed(state, state.scene, unit, around)
     for name in state.sees.get(unit.name, ()):
         state.seen_by[name].discard(unit.name)
     state.sees[unit.name] = depends_on(state.problem, unit, around) | state.beside[unit.name]
@@ -123,13 +129,30 @@ def _look_again(state: _State, unit: Unit) -> None:
         state.seen_by.setdefault(name, set()).add(unit.name)
 
 
-def _still_holds(state: _State, fold: UnitFold) -> bool:
-    """Whether the unit sees what it saw when its fold was found; where something has come near since, it looks again."""
-    unit = fold.unit
-    if look(state.problem, state.scene, repertoire(state.problem, unit)).key == state.keys[unit.name]:
-        return True
-    _look_again(state, unit)
-    return False
+def _guessed(state: _State, scene: Scene, unit: Unit, around: Surroundings) -> float:
+    """What a unit counts where it has looked around: that of its cheapest choice while nothing is in its way."""
+    own, cheapest = repertoire(state.problem, unit), state.floor[unit.name]
+    if not is_solved(state.problem, around) and has_room(state.problem, own, around, cheapest):
+        return cheapest.weight
+    return _weight(fold_seen(state.problem, scene, own, around))
+
+
+def _folded(state: _State, name: str) -> UnitFold | None:
+    """The fold of a unit as the furniture stands now, or None where it counts more than was guessed."""
+    own = repertoire(state.problem, state.rest[name])
+    around = look(state.problem, state.scene, own)
+    fold = fold_seen(state.problem, state.scene, own, around)
+    if round(_weight(fold) - state.guess[name], DIGITS) > 0:
+        state.guess[name] = _weight(fold)
+        return None
+    if isinstance(fold, Refusal):
+        return None
+    slants = any(o.variant is not None and o.variant.mechanism == "slanted" for o in fold.chosen.values())
+    if not slants or not around.offset.any():
+        return fold
+    # What looked the same before may differ in what sticks out of the outline.
+    final = fold_seen(state.problem, state.scene, own, around, is_final=True)
+    return final if isinstance(final, UnitFold) else fold
 
 
 def _beside(problem: Problem) -> dict[str, set[str]]:
@@ -144,22 +167,34 @@ def _beside(problem: Problem) -> dict[str, set[str]]:
     return found
 
 
-def _best(state: _State) -> UnitFold | None:
-    """The fold with the least C1 + C2, by name where several have."""
-    able = {n: f for n in sorted(state.rest) if isinstance(f := state.now[n], UnitFold)}
-    excess = {n: e for n in state.rest if (e := _weight(state.now[n]) - state.floor[n]) > 0}
-    hopes = dict.fromkeys(able, 0.0)
-    for name in excess:
-        for other in state.sees[name]:
+def _best(state: _State) -> str | None:
+    """The unit with the least C1 + C2, by name where several have; None where no unit can fold."""
+    while True:
+        best: tuple[float, str] | None = None
+        does_hold = True
+        for hope, name in _hopes(state):
+            if best is not None and best <= (hope, name):
+                break
+            fold = _folded(state, name)
+            does_hold = fold is not None
+            if fold is None:
+                break
+            change = round(_change(state, fold), DIGITS)
+            best = min(best, (change, name)) if best is not None else (change, name)
+        # Where what was guessed does not hold, the look-ahead begins anew; guesses only ever rise.
+        if does_hold:
+            return best[1] if best is not None else None
+
+
+def _hopes(state: _State) -> list[tuple[float, str]]:
+    """The units that may fold, each with how much their folding could at best save others; best first."""
+    hopes = {name: 0.0 for name in state.rest if state.guess[name] < REFUSED}
+    for name in state.rest:
+        excess = state.guess[name] - state.floor[name].weight
+        for other in state.sees[name] if excess > 0 else ():
             if other in hopes and other != name:
-                hopes[other] -= excess[name]
-    best: tuple[float, str] | None = None
-    for name in sorted(able, key=lambda n: (round(hopes[n], DIGITS), n)):
-        if best is not None and best <= (round(hopes[name], DIGITS), name):
-            break
-        change = round(_change(state, able[name]), DIGITS)
-        best = min(best, (change, name)) if best is not None else (change, name)
-    return able[best[1]] if best is not None else None
+                hopes[other] -= excess
+    return sorted((round(hope, DIGITS), name) for name, hope in hopes.items())
 
 
 def _change(state: _State, fold: UnitFold) -> float:
@@ -168,23 +203,14 @@ def _change(state: _State, fold: UnitFold) -> float:
     total = 0.0
     for name in sorted(state.seen_by.get(fold.unit.name, ())):
         if name in state.rest and name != fold.unit.name:
-            total += _weight(fold_unit(state.problem, then, state.rest[name])) - _weight(state.now[name])
+            unit = state.rest[name]
+            around = look(state.problem, then, repertoire(state.problem, unit))
+            total += _guessed(state, then, unit, around) - state.guess[name]
     return total
 
 
-def _final(state: _State, fold: UnitFold) -> UnitFold:
-    """The fold as the furniture stands now: what looked the same before may differ in what sticks out of the outline."""
-    own = repertoire(state.problem, fold.unit)
-    slants = any(o.variant is not None and o.variant.mechanism == "slanted" for o in fold.chosen.values())
-    if not slants or not state.scene.moved(fold.unit.bases[0]).any():
-        return fold
-    around = look(state.problem, state.scene, own)
-    final = fold_seen(state.problem, state.scene, own, around, is_final=True)
-    return final if isinstance(final, UnitFold) else fold
-
-
 def _merged(state: _State, folds: list[UnitFold]) -> Ordered:
-    refusals = [r for r in state.now.values() if isinstance(r, Refusal) and r.unit.name in state.rest]
+    refusals = [r for n in state.rest if isinstance(r := fold_unit(state.problem, state.scene, state.rest[n]), Refusal)]
     if len(refusals) == 1:
         return Ordered(tuple(folds), tuple(refusals))
     whole = merged(state.problem.scaffold, tuple(state.rest.values()))

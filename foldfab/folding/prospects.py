@@ -57,6 +57,13 @@ def prospects(problem: Problem, own: Repertoire, around: Surroundings, *, in_pla
     return Prospects(lanes, room, owners)
 
 
+def blocked_pieces(problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane]) -> Room:
+    """Which pieces of some lanes meet something around the unit or leave what they must keep to."""
+    room: Room = {}
+    _look_at(problem, own, around, many, room, {})
+    return room
+
+
 def unhindered(problem: Problem, own: Repertoire) -> Prospects:
     """What the patches of a unit could do if nothing stood around it."""
     steps = problem.options.shrink_steps

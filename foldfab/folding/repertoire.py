@@ -1,7 +1,8 @@
 """What the patches of a unit can do: every variant of every patch, swept along the unit's nominal fold (section 5.3).
 
 A variant with its sweep is a *lane*. Lanes are made once for a unit, whatever stands around it, and so is the conflict
-graph between them; lanes on plinths are added when the surroundings ask for them.
+graph between them; lanes with more hinges are added when nothing cheaper will do, and lanes on plinths when the
+surroundings ask for them.
 """
 
 from __future__ import annotations
@@ -74,7 +75,9 @@ class Repertoire:
     by_variant: dict[tuple[str, Variant], Lane | None] = field(default_factory=dict)
     """Lanes by what they are; None where a variant does not fit."""
     plain: dict[str, tuple[Lane, ...]] = field(default_factory=dict)
-    """By patch, its lanes without plinths."""
+    """By patch, its lanes without plinths that were made already, cheapest first."""
+    later: dict[str, list[Variant]] = field(default_factory=dict)
+    """By patch, the variants that were not needed yet, cheapest first; all of them cost more than those in `plain`."""
     pieces: dict[tuple[int, int], Bools] = field(default_factory=dict)
     """By two lanes of different patches, the first one smaller, which of their pieces meet (N_s, N_s)."""
     compared: set[int] = field(default_factory=set)
@@ -90,12 +93,23 @@ def repertoire(problem: Problem, unit: Unit) -> Repertoire:
     if unit not in problem.repertoires:
         made = Repertoire(unit, nominal(problem, unit))
         for patch in unit.patches:
-            found = (lane(problem, made, patch, v) for v in variants(problem, unit, patch))
-            made.plain[patch] = tuple(x for x in found if x is not None)
+            made.later[patch] = sorted(variants(problem, unit, patch), key=lambda v: v.hinges)
+            made.plain[patch] = ()
+            while made.later[patch] and not made.plain[patch]:
+                extend(problem, made, patch)
         made.reach.update(_reach(problem, made))
         problem.repertoires[unit] = made
     known: Repertoire = problem.repertoires[unit]
     return known
+
+
+def extend(problem: Problem, own: Repertoire, patch: str) -> None:
+    """Adds the lanes of a patch that have the least number of hinges among those that were not needed yet."""
+    later = own.later[patch]
+    count = sum(v.hinges == later[0].hinges for v in later)
+    found = (lane(problem, own, patch, v) for v in later[:count])
+    own.plain[patch] += tuple(x for x in found if x is not None)
+    del later[:count]
 
 
 def lane(problem: Problem, own: Repertoire, patch: str, variant: Variant) -> Lane | None:

@@ -16,7 +16,7 @@ from foldfab.folding.rehearsal import first_clash
 from foldfab.folding.repertoire import repertoire
 from foldfab.folding.scene import open_scene
 from foldfab.folding.site import sites, slab
-from foldfab.folding.soundness import disconnected, rigid_patches
+from foldfab.folding.soundness import disconnected, hangs_together, rigid_patches
 from foldfab.folding.unit_fold import UnitFold
 from foldfab.folding.tree import unit_tree
 from foldfab.folding.units import decompose
@@ -63,12 +63,13 @@ def _solved(scaffold: Scaffold, thickness: Thickness) -> FoldSolution:
     problem = posed(scaffold, thickness)
     _require_variants(problem)
     for _ in range(REHEARSALS):
-        scene, floor = open_scene(problem), floors(problem)
-        ordered = greedy(problem, scene, floor)
+        scene, choices = open_scene(problem), floors(problem)
+        ordered = greedy(problem, scene, choices)
         if ordered.refusals:
             raise FoldingError(_refused(ordered))
         met = first_clash(problem, scene, ordered.folds)
         if met is None:
+            floor = {name: choice.weight for name, choice in choices.items()}
             if spent_beyond(floor, ordered) > NO_MORE:
                 floor = tight_floors(problem, scene)
             return _solution(problem, floor, ordered)
@@ -93,26 +94,21 @@ def posed(scaffold: Scaffold, thickness: Thickness) -> Problem:
 
 
 def _require_variants(problem: Problem) -> None:
-    """A patch too short for any hinge at this scale is an error of its own: printing larger or thinner helps."""
-    short = []
-    for unit in problem.units:
-        own = repertoire(problem, unit)
-        for name in unit.patches:
-            site = problem.sites[name]
-            if not own.plain[name]:
-                short.append(f"{name} ({site.clear:.1f} mm between its bases)")
-    rigid = [name for name, site in problem.sites.items() if not site.patch.hingeable and site.far is not None]
-    if rigid and len(short) == len(problem.sites):
+    """Patches without any option of their own have to go; where the furniture needs them, say so at once."""
+    lost = [p for unit in problem.units for p in unit.patches if not repertoire(problem, unit).plain[p]]
+    if not lost or hangs_together(problem.scaffold, set(lost)):
+        return
+    rigid = [p for p in lost if not problem.sites[p].patch.hingeable and problem.sites[p].far is not None]
+    if rigid:
         raise FoldingError(
             f"{', '.join(rigid[:4])} must not be split, cannot slant here and cannot be disconnected without cutting "
             "the furniture in two; allow slanting or a hinge"
         )
-    if len(short) == len(problem.sites):
-        raise FoldingError(
-            f"at scale 1:{1 / problem.scaffold.scale:.3g} no patch is long enough for its hinges: "
-            f"{', '.join(short[:4])}; "
-            f"print larger or with plates thinner than {problem.thickness.panel:g} mm"
-        )
+    told = [f"{p} ({problem.sites[p].clear:.1f} mm high)" for p in lost[:4]]
+    raise FoldingError(
+        f"at scale 1:{1 / problem.scaffold.scale:.3g} {', '.join(told)} cannot carry hinges, and without them the "
+        f"furniture falls apart; print larger or with plates thinner than {problem.thickness.panel:g} mm"
+    )
 
 
 def _refused(ordered: Ordered) -> str:
@@ -136,7 +132,7 @@ def _solution(problem: Problem, floor: Mapping[str, float], ordered: Ordered) ->
 
 def spent_beyond(floor: Mapping[str, float], ordered: Ordered) -> float:
     """By how much an order's folds count more than what they count at least."""
-    return sum(fold.weight for fold in ordered.folds) - sum(floor.values())
+    return float(sum(fold.weight for fold in ordered.folds) - sum(floor.values()))
 
 
 def _steps(problem: Problem, folds: tuple[UnitFold, ...]) -> tuple[Step, ...]:

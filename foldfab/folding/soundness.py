@@ -26,14 +26,14 @@ def disconnected(scaffold: Scaffold, names: tuple[str, ...], thickness: Thicknes
     """The scaffold with those patches disconnected at their top end, as far as it stays in one piece."""
     loose: list[str] = []
     for name in names:
-        loose += [name] if _hangs_together(scaffold, {*loose, name}) else []
+        loose += [name] if hangs_together(scaffold, {*loose, name}) else []
     cut = tuple(_cut_at_top(scaffold, p, thickness) if p.name in loose else p for p in scaffold.patches)
     notes = tuple(f"{name} is disconnected at its top end, because it must not get a hinge" for name in loose)
     return replace(scaffold, patches=cut, notes=(*scaffold.notes, *notes))
 
 
-def _hangs_together(scaffold: Scaffold, loose: set[str]) -> bool:
-    """Whether the other patches hold all bases together."""
+def hangs_together(scaffold: Scaffold, loose: set[str]) -> bool:
+    """Whether the patches other than those that are loose hold all bases together."""
     graph: nx.Graph[str] = nx.Graph()
     graph.add_nodes_from(base.name for base in scaffold.bases)
     graph.add_edges_from(p.bases for p in scaffold.patches if len(p.bases) == 2 and p.name not in loose)

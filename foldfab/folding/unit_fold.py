@@ -6,21 +6,22 @@ lack, and the fold is simulated. What then meets is added to the conflicts and t
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from foldfab.folding.basic import Option
+from foldfab.folding import basic
+from foldfab.folding.basic import Option, Variant
 from foldfab.folding.choose import Combination, cheapest
 from foldfab.folding.conflict import compare, neighbours, table, windows_table
 from foldfab.folding.model import Chain
-from foldfab.folding.options import Options, options_of
+from foldfab.folding.options import options_of
 from foldfab.folding.press import Motion
 from foldfab.folding.problem import Problem
-from foldfab.folding.prospects import Prospects, prospects, unhindered
+from foldfab.folding.prospects import Prospects, blocked_pieces, prospects, unhindered
 from foldfab.folding.realise import Clash, realised
-from foldfab.folding.repertoire import Repertoire, repertoire
+from foldfab.folding.repertoire import Lane, Repertoire, extend, repertoire
 from foldfab.folding.scene import Scene
 from foldfab.folding.surroundings import Surroundings, held_up, look
 from foldfab.folding.units import Unit
@@ -47,6 +48,20 @@ class UnitFold:
     """Sum of its terms of eq. 1."""
     weight: float
     """What the search minimises: the cost, with deletions counted many times."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Choice:
+    """One option for each patch of a unit, not yet played."""
+
+    weight: float
+    """What it counts in the search."""
+    places: Mapping[str, tuple[Lane, tuple[int, int]]]
+    """By patch that is kept, its lane and its window in N_s-ths."""
+
+
+_Lesson = tuple[Clash, tuple[tuple[Lane, tuple[int, int]] | None, ...]]
+"""A clash and what was chosen for each patch of the unit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,14 +94,32 @@ def fold_seen(
     return found
 
 
-def least_weight(problem: Problem, own: Repertoire) -> float:
-    """What the cheapest choice without conflicts counts, whatever stands around the unit and however it is played."""
-    found = unhindered(problem, own)
-    options = options_of(problem, found, np.zeros(3))
-    picked = _Graph(problem, own, found, options).cheapest()
+def least_choice(problem: Problem, own: Repertoire) -> Choice:
+    """The cheapest choice without conflicts, whatever stands around the unit and however it is played."""
+    graph = _Graph(problem, own, unhindered(problem, own), np.zeros(3))
+    picked = graph.cheapest()
+    while (wanted := _wanted(problem, own, graph, picked)):
+        for patch in wanted:
+            extend(problem, own, patch)
+        graph = _Graph(problem, own, unhindered(problem, own), np.zeros(3))
+        picked = graph.cheapest()
     if picked is None:
-        return np.inf
-    return sum(float(options[p].weight[i]) for p, i in zip(own.unit.patches, picked, strict=True))
+        return Choice(np.inf, {})
+    places = {o.patch: o.place(i) for o, i in zip(graph.options, picked, strict=True)}
+    return Choice(graph.weight(picked), {p: place for p, place in places.items() if place is not None})
+
+
+def is_solved(problem: Problem, around: Surroundings) -> bool:
+    """Whether the unit has been folded in such surroundings before."""
+    return (around.key, False, None) in problem.solved
+
+
+def has_room(problem: Problem, own: Repertoire, around: Surroundings, choice: Choice) -> bool:
+    """Whether nothing around is in the way of a choice, as far as the nominal fold tells."""
+    if held_up(problem, own.unit, around.limits) or len(choice.places) < len(own.unit.patches):
+        return False
+    room = blocked_pieces(problem, own, around, [x for x, _ in choice.places.values()])
+    return not any(room[x.number][a:b].any() for x, (a, b) in choice.places.values())
 
 
 def _fold(
@@ -97,33 +130,54 @@ def _fold(
     if standing:
         return Refusal(unit, f"{standing} stands in the way unfolded")
     found = prospects(problem, own, around, in_place=in_place)
-    options = options_of(problem, found, around.offset)
-    graph = _Graph(problem, own, found, options)
+    graph = _Graph(problem, own, found, around.offset)
     short = [p for p in unit.patches if not found.lanes[p]]
     last = "no combination of options is free of conflicts"
     if short:
         last = f"{', '.join(short[:3])} is too short or too steep for hinges at this scale; print larger or thinner"
     for _ in range(ROUNDS):
         picked = graph.cheapest()
+        while (wanted := _wanted(problem, own, graph, picked)):
+            for patch in wanted:
+                extend(problem, own, patch)
+            found = prospects(problem, own, around, in_place=in_place)
+            graph = _Graph(problem, own, found, around.offset, graph.learned)
+            picked = graph.cheapest()
         if picked is None:
             break
-        chosen = {p: options[p][i] for p, i in zip(unit.patches, picked, strict=True)}
+        chosen = {o.patch: o[i] for o, i in zip(graph.options, picked, strict=True)}
         result = realised(problem, scene, unit, around, chosen)
         if not isinstance(result, Clash):
             reasons = _reasons(problem, found, chosen)
             cost = sum(o.cost for o in chosen.values())
-            weight = sum(float(options[p].weight[i]) for p, i in zip(unit.patches, picked, strict=True))
-            return UnitFold(unit, chosen, reasons, *result, around.cluster, cost, weight)
+            return UnitFold(unit, chosen, reasons, *result, around.cluster, cost, graph.weight(picked))
         last = last if short else result.reason
         graph.learn(picked, result)
     return Refusal(unit, last)
 
 
+def _wanted(problem: Problem, own: Repertoire, graph: _Graph, picked: tuple[int, ...] | None) -> list[str]:
+    """The patches with lanes not made yet that could better a choice; all such where there is no choice."""
+    if picked is None:
+        return [p for p in own.unit.patches if own.later[p]]
+    least = {p: _price(problem, p, many[0].variant) if many else np.inf for p, many in own.plain.items()}
+    spare = graph.weight(picked) - sum(price for price in least.values() if np.isfinite(price))
+    return [p for p, later in own.later.items() if later and _price(problem, p, later[0]) - least[p] < spare]
+
+
+def _price(problem: Problem, patch: str, variant: Variant) -> float:
+    """λ · eq. 3 of a whole patch."""
+    return problem.sites[patch].importance * basic.cost(variant.hinges, 1.0, problem.options)
+
+
 class _Graph:
     """The conflict graph of a unit in some surroundings, with what simulations have added to it."""
 
-    def __init__(self, problem: Problem, own: Repertoire, found: Prospects, options: Mapping[str, Options]) -> None:
+    def __init__(
+        self, problem: Problem, own: Repertoire, found: Prospects, offset: Array, learned: Iterable[_Lesson] = ()
+    ) -> None:
         self.patches = own.unit.patches
+        options = options_of(problem, found, offset)
         self.options = [options[p] for p in self.patches]
         self.costs: list[Array] = [o.weight.copy() for o in self.options]
         compare(problem, own, (x for many in found.lanes.values() for x in many))
@@ -135,13 +189,21 @@ class _Graph:
             if made is not None:
                 self.tables[place[a], place[b]] = made
         self.forbidden: set[Combination] = set()
+        self.learned: list[_Lesson] = []
+        for clash, places in learned:
+            self.learn(tuple(o.index(place) for o, place in zip(self.options, places, strict=True)), clash)
 
     def cheapest(self) -> tuple[int, ...] | None:
         """The cheapest choice, one option a patch."""
         return cheapest(self.costs, self.tables, frozenset(self.forbidden))
 
+    def weight(self, picked: tuple[int, ...]) -> float:
+        """What a choice counts in the search."""
+        return float(sum(o.weight[i] for o, i in zip(self.options, picked, strict=True)))
+
     def learn(self, picked: tuple[int, ...], clash: Clash) -> None:
         """Adds what a simulation found: what is too wide for its neighbours is so when it is still wider."""
+        self.learned.append((clash, tuple(o.place(i) for o, i in zip(self.options, picked, strict=True))))
         place = {p: g for g, p in enumerate(self.patches)}
         for patches in clash.patches:
             groups = sorted(place[p] for p in patches)

@@ -67,12 +67,11 @@ def table(
 def neighbours(own: Repertoire, lanes: Mapping[str, tuple[Lane, ...]]) -> list[tuple[str, str]]:
     """The pairs of patches whose options may conflict, sorted."""
     found = {(own.lanes[a].patch, own.lanes[b].patch) for a, b in own.pieces}
-    pairs: dict[tuple[str, str | None], list[str]] = {}
+    together: dict[str, list[str]] = {}
     for patch, many in lanes.items():
         if many and many[0].chain.far is not None:
-            ends = sorted((many[0].chain.anchor, many[0].chain.far))
-            pairs.setdefault((ends[0], ends[1]), []).append(patch)
-    for patches in pairs.values():
+            together.setdefault(many[0].chain.far, []).append(patch)
+    for patches in together.values():
         every = [x for p in patches for x in lanes[p]]
         snaps = [x.snap for x in every if x.chain.shape.comes_down]
         alike = not snaps or max(snaps) - min(snaps) <= 2 * min(x.give for x in every)
@@ -91,8 +90,8 @@ def drag_alike(a: Lane, b: Lane) -> bool:
 
 
 def snap_alike(a: Lane, b: Lane) -> bool:
-    """Whether the play in their hinges covers the difference between the snaps of two lanes."""
-    if not _share_bases(a, b) or not a.chain.shape.comes_down or not b.chain.shape.comes_down:
+    """Whether the play in their hinges covers the difference between the snaps of two lanes that start together."""
+    if a.chain.far != b.chain.far or not a.chain.shape.comes_down or not b.chain.shape.comes_down:
         return True
     return abs(a.snap - b.snap) <= a.give + b.give
 

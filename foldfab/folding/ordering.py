@@ -17,12 +17,13 @@ import numpy as np
 
 from foldfab.folding.problem import Problem
 from foldfab.folding.repertoire import repertoire
-from foldfab.folding.scene import Scene, advanced, alone
+from foldfab.folding.scene import Scene, advanced
 from foldfab.folding.surroundings import Surroundings, depends_on, look
 from foldfab.folding.unit_fold import (
     Choice,
     Refusal,
     UnitFold,
+    fold_alone,
     fold_seen,
     fold_unit,
     has_room,
@@ -73,7 +74,7 @@ def floors(problem: Problem) -> dict[str, Choice]:
 
 def tight_floors(problem: Problem, scene: Scene) -> dict[str, float]:
     """By unit, what it counts where nothing but itself is there and it is played through: no order lets it fold for less."""
-    return {u.name: _weight(fold_unit(problem, alone(scene, u), u)) for u in problem.units}
+    return {u.name: _weight(fold_alone(problem, scene, u)) for u in problem.units}
 
 
 def greedy(problem: Problem, scene: Scene, floor: Mapping[str, Choice]) -> Ordered:
@@ -134,7 +135,10 @@ def _guessed(state: _State, scene: Scene, unit: Unit, around: Surroundings) -> f
     own, cheapest = repertoire(state.problem, unit), state.floor[unit.name]
     if not is_solved(state.problem, around) and has_room(state.problem, own, around, cheapest):
         return cheapest.weight
-    return _weight(fold_seen(state.problem, scene, own, around))
+    found = fold_seen(state.problem, scene, own, around)
+    if isinstance(found, Refusal) and unit not in state.problem.hopeless:
+        fold_alone(state.problem, state.scene, unit)
+    return _weight(found)
 
 
 def _folded(state: _State, name: str) -> UnitFold | None:

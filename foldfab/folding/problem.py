@@ -48,6 +48,8 @@ class Problem:
     """What the patches of each unit can do, by unit."""
     solved: dict[object, Any] = field(default_factory=dict)
     """Solutions of units, by all that they depend on."""
+    hopeless: dict[Unit, str] = field(default_factory=dict)
+    """Units that cannot fold wherever they stand, and why."""
     extents: dict[bytes, tuple[float, float]] = field(default_factory=dict)
     """By direction, between which coordinates the open furniture lies, mm."""
 

@@ -66,7 +66,7 @@ def _played(
     )
     for chain in chains:
         if np.abs(motion.play[chain.patch]).max() > press.play_limit(chain, problem.thickness.gap):
-            beside = _most_unlike(chain, chains)
+            beside = _most_unlike(chain, chains, way)
             blamed = (chain.patch, beside) if beside else tuple(chosen)
             return Clash((blamed,), f"{chain.patch} cannot follow {beside or 'its unit'}", holds_for="any window")
     met = list(clashes(unit, problem.tree.number, chains, motion, around, problem.thickness))
@@ -81,9 +81,10 @@ def _played(
     return chains, motion
 
 
-def _most_unlike(chain: Chain, chains: tuple[Chain, ...]) -> str:
-    """The patch between the same bases whose snap differs most, or nothing."""
-    others = [c for c in chains if c is not chain and {c.anchor, c.far} == {chain.anchor, chain.far}]
+def _most_unlike(chain: Chain, chains: tuple[Chain, ...], way: Mapping[str, float]) -> str:
+    """The patch that starts to fold at the same time and whose snap differs most, or nothing."""
+    held = [c for c in chains if c is not chain and c.far is not None]
+    others = [c for c in held if abs(way[c.far or ""] - way[chain.far or ""]) <= press.SAME_LEVEL]
     own = peak(chain)[0]
     return max(others, key=lambda c: (abs(peak(c)[0] - own), c.patch)).patch if others else ""
 

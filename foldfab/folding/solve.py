@@ -73,7 +73,7 @@ def _solved(scaffold: Scaffold, thickness: Thickness) -> FoldSolution:
             if spent_beyond(floor, ordered) > NO_MORE:
                 floor = tight_floors(problem, scene)
             return _solution(problem, floor, ordered)
-        problem = replace(problem, banned=problem.banned | {met}, repertoires={}, solved={})
+        problem = replace(problem, banned=problem.banned | {met}, repertoires={}, solved={}, hopeless={})
     told = ", ".join(sorted({patch for patch, _ in problem.banned}))
     raise FoldingError(f"no folding solution found: {told} stay in the way of what folds before; try another thickness")
 

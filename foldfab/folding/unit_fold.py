@@ -22,7 +22,7 @@ from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import Prospects, blocked_pieces, prospects, unhindered
 from foldfab.folding.realise import Clash, realised
 from foldfab.folding.repertoire import Lane, Repertoire, extend, repertoire
-from foldfab.folding.scene import Scene
+from foldfab.folding.scene import Scene, alone
 from foldfab.folding.surroundings import Surroundings, held_up, look
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Array, Bools, Indices
@@ -87,10 +87,22 @@ def fold_seen(
     A solution is found once for all scenes that look the same from the unit. Where it has been carried to decides only
     between options of equal cost, and is looked at only where the fold `is_final`.
     """
+    if own.unit in problem.hopeless:
+        return Refusal(own.unit, problem.hopeless[own.unit])
     key = (around.key, in_place, tuple(np.round(around.offset, 3)) if is_final else None)
     if key not in problem.solved:
         problem.solved[key] = _fold(problem, scene, own, around, in_place=in_place)
     found: UnitFold | Refusal = problem.solved[key]
+    return found
+
+
+def fold_alone(problem: Problem, scene: Scene, unit: Unit) -> UnitFold | Refusal:
+    """What a unit could do where nothing but itself is there; where that is nothing, it is never tried again."""
+    bare = alone(scene, unit)
+    own = repertoire(problem, unit)
+    found = fold_seen(problem, bare, own, look(problem, bare, own))
+    if isinstance(found, Refusal):
+        problem.hopeless[unit] = found.reason
     return found
 
 

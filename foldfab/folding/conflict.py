@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from foldfab.folding.problem import Problem
-from foldfab.folding.repertoire import Lane, Repertoire, cuts_of, resting, swept
+from foldfab.folding.repertoire import Lane, Repertoire, cuts_of, lane, resting, swept
 from foldfab.folding.space import Batch, conflicts
 from foldfab.geometry.arrays import Array, Bools
 
@@ -27,6 +28,11 @@ def compare(problem: Problem, own: Repertoire, many: Iterable[Lane]) -> None:
     fresh = [x for x in many if x.number not in own.compared]
     if not fresh:
         return
+    # Plinths shorten a chain, but thickness may only add constraints (section 5.6): what its plain lane meets, it meets.
+    plain = {
+        x.number: lane(problem, own, x.patch, replace(x.variant, pads=(0.0, 0.0))) for x in fresh if any(x.variant.pads)
+    }
+    fresh += [y for y in plain.values() if y is not None and y not in fresh and y.number not in own.compared]
     known = [own.lanes[n] for n in sorted(own.compared)]
     same, once = _never_compared(own, fresh)
     cuts = cuts_of(own)
@@ -41,6 +47,8 @@ def compare(problem: Problem, own: Repertoire, many: Iterable[Lane]) -> None:
             if a is not None and b is not None:
                 _learn(own, conflicts(a, b, cuts, apart))
     own.compared.update(x.number for x in fresh)
+    for number, y in plain.items():
+        own.plain_of[number] = y.number if y is not None else number
 
 
 def windows_table(windows: tuple[tuple[int, int], ...], steps: int) -> Array:
@@ -132,9 +140,11 @@ def _table(
     never = np.zeros((len(first), len(second)), dtype=bool)
     for i, a in enumerate(first):
         for j, b in enumerate(second):
-            pieces = own.pieces.get((a.number, b.number) if a.number < b.number else (b.number, a.number))
-            if pieces is not None:
-                met[i, :, j] = pieces if a.number < b.number else pieces.T
+            for p in {a.number, own.plain_of.get(a.number, a.number)}:
+                for q in {b.number, own.plain_of.get(b.number, b.number)}:
+                    pieces = own.pieces.get((min(p, q), max(p, q)))
+                    if pieces is not None:
+                        met[i, :, j] += pieces if p < q else pieces.T
             never[i, j] = not drag_alike(a, b) or not snap_alike(a, b)
     held = np.einsum("ws,isjt,vt->iwjv", inside, met, inside, optimize=True) > 0.5
     held |= never[:, None, :, None]

@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+import networkx as nx
 import numpy as np
 
 from foldfab.folding.problem import Problem
@@ -157,6 +158,15 @@ def _folded(state: _State, name: str) -> UnitFold | None:
     # What looked the same before may differ in what sticks out of the outline.
     final = fold_seen(state.problem, state.scene, own, around, is_final=True)
     return final if isinstance(final, UnitFold) else fold
+
+
+def neighbouring(problem: Problem) -> list[set[str]]:
+    """Groups of units whose folds reach into each other's space, by name."""
+    graph: nx.Graph[str] = nx.Graph()
+    for name, others in _beside(problem).items():
+        graph.add_node(name)
+        graph.add_edges_from((name, other) for other in others)
+    return sorted((set(c) for c in nx.connected_components(graph)), key=min)
 
 
 def _beside(problem: Problem) -> dict[str, set[str]]:

@@ -18,7 +18,7 @@ from foldfab.folding.problem import Problem
 from foldfab.folding.repertoire import Lane, Repertoire, cuts_of, far_shift, lane, stops_early, swept
 from foldfab.folding.space import Batch, blocked, carried
 from foldfab.folding.surroundings import Surroundings
-from foldfab.geometry.arrays import Array, Bools
+from foldfab.geometry.arrays import Bools
 
 PAD_SHARE = 0.4
 """Plinths may take at most this share of the height between two bases; beyond it nothing flat is left."""

@@ -34,6 +34,8 @@ class Clash:
     reason: str
     holds_for: Literal["this", "wider windows", "any window"] = "this"
     """Which other options it rules out: where parts meet, wider windows of the same patches meet as well."""
+    met: tuple[tuple[str, str], ...] = ()
+    """For each of the sets, the two owners that meet; empty where nothing does."""
 
 
 def realised(
@@ -75,9 +77,10 @@ def _played(
         if carried and is_slanted:
             # What hangs on a base is dragged along with it, whatever is left of the patches that drag it.
             dragging = tuple((c.patch,) for c in chains if c.far is not None)
-            return Clash(dragging, f"{carried[0][0]} is carried into {carried[0][1]}", holds_for="any window")
-        mine = [tuple(p for p in pair if p in chosen) or tuple(chosen) for pair in met]
-        return Clash(tuple(dict.fromkeys(mine)), f"{met[0][0]} meets {met[0][1]}", holds_for="wider windows")
+            reason = f"{carried[0][0]} is carried into {carried[0][1]}"
+            return Clash(dragging, reason, "any window", (carried[0],) * len(dragging))
+        mine = tuple(tuple(p for p in pair if p in chosen) or tuple(chosen) for pair in met)
+        return Clash(mine, f"{met[0][0]} meets {met[0][1]}", "wider windows", tuple(met))
     return chains, motion
 
 

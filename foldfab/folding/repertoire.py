@@ -80,6 +80,8 @@ class Repertoire:
     """By patch, the variants that were not needed yet, cheapest first; all of them cost more than those in `plain`."""
     pieces: dict[tuple[int, int], Bools] = field(default_factory=dict)
     """By two lanes of different patches, the first one smaller, which of their pieces meet (N_s, N_s)."""
+    plain_of: dict[int, int] = field(default_factory=dict)
+    """By lane on plinths, the same without."""
     compared: set[int] = field(default_factory=set)
     """Lanes whose conflicts are known."""
     tables: dict[object, Bools] = field(default_factory=dict)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from foldfab.errors import FoldingError
 from foldfab.folding import anatomy, basic
 from foldfab.folding.model import FoldSolution, Modification, Step, Thickness
+from foldfab.folding.optimum import NO_MORE, optimal
 from foldfab.folding.ordering import Ordered, floors, greedy, tight_floors, travel
 from foldfab.folding.problem import Problem
 from foldfab.folding.rehearsal import first_clash
@@ -17,16 +17,14 @@ from foldfab.folding.repertoire import repertoire
 from foldfab.folding.scene import open_scene
 from foldfab.folding.site import sites, slab
 from foldfab.folding.soundness import disconnected, hangs_together, rigid_patches
-from foldfab.folding.unit_fold import UnitFold
 from foldfab.folding.tree import unit_tree
+from foldfab.folding.unit_fold import UnitFold
 from foldfab.folding.units import decompose
 from foldfab.geometry.boxes import bounds, stacked
 from foldfab.scaffold.model import Scaffold
 
 SINGLES = 4
 """How many un-hingeable patches are tried to be disconnected each for itself, before all of them are."""
-NO_MORE = 1e-5
-"""What preferences between options of equal cost may add up to."""
 REHEARSALS = 8
 """How often the fold is solved anew because a rehearsal of the whole has shown a clash; the kernel judges the last."""
 
@@ -63,19 +61,30 @@ def _solved(scaffold: Scaffold, thickness: Thickness) -> FoldSolution:
     problem = posed(scaffold, thickness)
     _require_variants(problem)
     for _ in range(REHEARSALS):
-        scene, choices = open_scene(problem), floors(problem)
-        ordered = greedy(problem, scene, choices)
-        if ordered.refusals:
-            raise FoldingError(_refused(ordered))
-        met = first_clash(problem, scene, ordered.folds)
+        ordered, bound = _ordered(problem)
+        met = first_clash(problem, open_scene(problem), ordered.folds)
         if met is None:
-            floor = {name: choice.weight for name, choice in choices.items()}
-            if spent_beyond(floor, ordered) > NO_MORE:
-                floor = tight_floors(problem, scene)
-            return _solution(problem, floor, ordered)
+            return _solution(problem, bound, ordered)
         problem = replace(problem, banned=problem.banned | {met}, repertoires={}, solved={}, hopeless={})
     told = ", ".join(sorted({patch for patch, _ in problem.banned}))
     raise FoldingError(f"no folding solution found: {told} stay in the way of what folds before; try another thickness")
+
+
+def _ordered(problem: Problem) -> tuple[Ordered, float]:
+    """The folds of all units in their order, and what any order counts at least."""
+    scene, choices = open_scene(problem), floors(problem)
+    ordered = greedy(problem, scene, choices)
+    floor = {name: choice.weight for name, choice in choices.items()}
+    if ordered.refusals or _weight(ordered) - sum(floor.values()) > NO_MORE:
+        floor = tight_floors(problem, scene)
+    bound = sum(floor.values())
+    if problem.options.ordering == "optimal" and (ordered.refusals or _weight(ordered) - bound > NO_MORE):
+        known = None if ordered.refusals else ordered
+        found, bound = optimal(problem, scene, known, floor, problem.options.time_limit)
+        ordered = found or ordered
+    if ordered.refusals:
+        raise FoldingError(_refused(ordered))
+    return ordered, bound
 
 
 def posed(scaffold: Scaffold, thickness: Thickness) -> Problem:
@@ -116,13 +125,13 @@ def _refused(ordered: Ordered) -> str:
     return "no folding solution: " + "; ".join(told)
 
 
-def _solution(problem: Problem, floor: Mapping[str, float], ordered: Ordered) -> FoldSolution:
+def _solution(problem: Problem, least: float, ordered: Ordered) -> FoldSolution:
     chains = tuple(sorted((c for f in ordered.folds for c in f.chains), key=lambda c: c.patch))
     changed = [_modification(problem, fold, patch) for fold in ordered.folds for patch in fold.unit.patches]
     changed.sort(key=lambda m: m.patch)
     cost = sum(m.cost for m in changed)
-    # What was spent beyond the floor, preferences left aside, is what another solution could save at most.
-    spent = spent_beyond(floor, ordered)
+    # What was spent beyond the bound, preferences left aside, is what another solution could save at most.
+    spent = _weight(ordered) - least
     bound = cost if spent < NO_MORE else max(cost - spent, 0.0)
     steps = _steps(problem, ordered.folds)
     return FoldSolution(
@@ -130,9 +139,8 @@ def _solution(problem: Problem, floor: Mapping[str, float], ordered: Ordered) ->
     )
 
 
-def spent_beyond(floor: Mapping[str, float], ordered: Ordered) -> float:
-    """By how much an order's folds count more than what they count at least."""
-    return float(sum(fold.weight for fold in ordered.folds) - sum(floor.values()))
+def _weight(ordered: Ordered) -> float:
+    return float(sum(fold.weight for fold in ordered.folds))
 
 
 def _steps(problem: Problem, folds: tuple[UnitFold, ...]) -> tuple[Step, ...]:

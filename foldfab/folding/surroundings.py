@@ -161,13 +161,24 @@ def _limits(
         for a, b in zip(p, q, strict=True):
             lower, upper = scene.solids[a], scene.solids[b]
             room = _room(lower, shift[a], upper, shift[b]) - gap
-            standing = [s for s in (lower, upper) if s.state == "open"]
+            standing = _standing(scene, unit, i, lower) or _standing(scene, unit, j, upper)
             if not standing:
                 flat = min(flat, room)
             elif room < raised:
-                raised, owner = room, standing[0].owner
+                raised, owner = room, standing
         found[unit.bases[i], unit.bases[j]] = (float(flat), float(raised), owner)
     return found
+
+
+def _standing(scene: Scene, unit: Unit, group: int, solid: Solid) -> str:
+    """The patch that stands unfolded where a solid is one or is held up by one; nothing where it lies flat."""
+    if solid.state == "open":
+        return solid.owner
+    tree = scene.problem.tree
+    for other in between(tree, solid.base, tree.number[unit.bases[group]]):
+        if other.name not in scene.done:
+            return other.patches[0]
+    return ""
 
 
 def _room(lower: Solid, shift_a: Array, upper: Solid, shift_b: Array) -> float:

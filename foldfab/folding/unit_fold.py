@@ -6,26 +6,25 @@ lack, and the fold is simulated. What then meets is added to the conflicts and t
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from foldfab.folding import basic
 from foldfab.folding.basic import Option, Variant
-from foldfab.folding.choose import Combination, cheapest
-from foldfab.folding.conflict import compare, neighbours, table, windows_table
+from foldfab.folding.graph import Graph
 from foldfab.folding.model import Chain
-from foldfab.folding.options import options_of
 from foldfab.folding.press import Motion
 from foldfab.folding.problem import Problem
-from foldfab.folding.prospects import Prospects, blocked_pieces, prospects, unhindered
+from foldfab.folding.prospects import blocked_pieces, prospects, unhindered
 from foldfab.folding.realise import Clash, realised
+from foldfab.folding.reasons import reasons_of
 from foldfab.folding.repertoire import Lane, Repertoire, extend, repertoire
 from foldfab.folding.scene import Scene, alone
 from foldfab.folding.surroundings import Surroundings, held_up, look
 from foldfab.folding.units import Unit
-from foldfab.geometry.arrays import Array, Bools, Indices
+from foldfab.geometry.arrays import Indices
 
 ROUNDS = 60
 """Choices that are tried for one unit before it counts as not foldable at this moment."""
@@ -58,10 +57,6 @@ class Choice:
     """What it counts in the search."""
     places: Mapping[str, tuple[Lane, tuple[int, int]]]
     """By patch that is kept, its lane and its window in N_s-ths."""
-
-
-_Lesson = tuple[Clash, tuple[tuple[Lane, tuple[int, int]] | None, ...]]
-"""A clash and what was chosen for each patch of the unit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,12 +103,12 @@ def fold_alone(problem: Problem, scene: Scene, unit: Unit) -> UnitFold | Refusal
 
 def least_choice(problem: Problem, own: Repertoire) -> Choice:
     """The cheapest choice without conflicts, whatever stands around the unit and however it is played."""
-    graph = _Graph(problem, own, unhindered(problem, own), np.zeros(3))
+    graph = Graph(problem, own, unhindered(problem, own), np.zeros(3))
     picked = graph.cheapest()
-    while (wanted := _wanted(problem, own, graph, picked)):
+    while wanted := _wanted(problem, own, graph, picked):
         for patch in wanted:
             extend(problem, own, patch)
-        graph = _Graph(problem, own, unhindered(problem, own), np.zeros(3))
+        graph = Graph(problem, own, unhindered(problem, own), np.zeros(3))
         picked = graph.cheapest()
     if picked is None:
         return Choice(np.inf, {})
@@ -142,25 +137,25 @@ def _fold(
     if standing:
         return Refusal(unit, f"{standing} stands in the way unfolded")
     found = prospects(problem, own, around, in_place=in_place)
-    graph = _Graph(problem, own, found, around.offset)
+    graph = Graph(problem, own, found, around.offset)
     short = [p for p in unit.patches if not found.lanes[p]]
     last = "no combination of options is free of conflicts"
     if short:
         last = f"{', '.join(short[:3])} is too short or too steep for hinges at this scale; print larger or thinner"
     for _ in range(ROUNDS):
         picked = graph.cheapest()
-        while (wanted := _wanted(problem, own, graph, picked)):
+        while wanted := _wanted(problem, own, graph, picked):
             for patch in wanted:
                 extend(problem, own, patch)
             found = prospects(problem, own, around, in_place=in_place)
-            graph = _Graph(problem, own, found, around.offset, graph.learned)
+            graph = Graph(problem, own, found, around.offset, graph.learned)
             picked = graph.cheapest()
         if picked is None:
             break
         chosen = {o.patch: o[i] for o, i in zip(graph.options, picked, strict=True)}
         result = realised(problem, scene, unit, around, chosen)
         if not isinstance(result, Clash):
-            reasons = _reasons(problem, found, chosen)
+            reasons = reasons_of(problem, found, chosen)
             cost = sum(o.cost for o in chosen.values())
             return UnitFold(unit, chosen, reasons, *result, around.cluster, cost, graph.weight(picked))
         last = last if short else result.reason
@@ -168,7 +163,7 @@ def _fold(
     return Refusal(unit, last)
 
 
-def _wanted(problem: Problem, own: Repertoire, graph: _Graph, picked: tuple[int, ...] | None) -> list[str]:
+def _wanted(problem: Problem, own: Repertoire, graph: Graph, picked: tuple[int, ...] | None) -> list[str]:
     """The patches with lanes not made yet that could better a choice; all such where there is no choice."""
     if picked is None:
         return [p for p in own.unit.patches if own.later[p]]
@@ -180,83 +175,3 @@ def _wanted(problem: Problem, own: Repertoire, graph: _Graph, picked: tuple[int,
 def _price(problem: Problem, patch: str, variant: Variant) -> float:
     """λ · eq. 3 of a whole patch."""
     return problem.sites[patch].importance * basic.cost(variant.hinges, 1.0, problem.options)
-
-
-class _Graph:
-    """The conflict graph of a unit in some surroundings, with what simulations have added to it."""
-
-    def __init__(
-        self, problem: Problem, own: Repertoire, found: Prospects, offset: Array, learned: Iterable[_Lesson] = ()
-    ) -> None:
-        self.patches = own.unit.patches
-        options = options_of(problem, found, offset)
-        self.options = [options[p] for p in self.patches]
-        self.costs: list[Array] = [o.weight.copy() for o in self.options]
-        compare(problem, own, (x for many in found.lanes.values() for x in many))
-        inside = windows_table(self.options[0].windows, problem.options.shrink_steps)
-        place = {p: g for g, p in enumerate(self.patches)}
-        self.tables: dict[tuple[int, int], Bools] = {}
-        for a, b in neighbours(own, found.lanes):
-            made = table(problem, own, found.lanes[a], found.lanes[b], inside)
-            if made is not None:
-                self.tables[place[a], place[b]] = made
-        self.forbidden: set[Combination] = set()
-        self.learned: list[_Lesson] = []
-        for clash, places in learned:
-            self.learn(tuple(o.index(place) for o, place in zip(self.options, places, strict=True)), clash)
-
-    def cheapest(self) -> tuple[int, ...] | None:
-        """The cheapest choice, one option a patch."""
-        return cheapest(self.costs, self.tables, frozenset(self.forbidden))
-
-    def weight(self, picked: tuple[int, ...]) -> float:
-        """What a choice counts in the search."""
-        return float(sum(o.weight[i] for o, i in zip(self.options, picked, strict=True)))
-
-    def learn(self, picked: tuple[int, ...], clash: Clash) -> None:
-        """Adds what a simulation found: what is too wide for its neighbours is so when it is still wider."""
-        self.learned.append((clash, tuple(o.place(i) for o, i in zip(self.options, picked, strict=True))))
-        place = {p: g for g, p in enumerate(self.patches)}
-        for patches in clash.patches:
-            groups = sorted(place[p] for p in patches)
-            alike = [self._alike(g, picked[g], clash) for g in groups]
-            if len(groups) == 1:
-                self.costs[groups[0]][alike[0]] = np.inf
-            elif len(groups) == 2:
-                g, h = groups
-                shape = (len(self.costs[g]), len(self.costs[h]))
-                own = self.tables[g, h].copy() if (g, h) in self.tables else np.zeros(shape, dtype=bool)
-                own[np.ix_(*alike)] = True
-                self.tables[g, h] = own
-            else:
-                self.forbidden.add(tuple((g, picked[g]) for g in groups))
-
-    def _alike(self, group: int, index: int, clash: Clash) -> list[int]:
-        """The options of a patch that a clash of the one at `index` rules out as well."""
-        options = self.options[group]
-        if clash.holds_for == "this" or index == len(options.price) - 1:
-            return [index]
-        return options.like(index, wider=clash.holds_for == "wider windows")
-
-
-def _reasons(problem: Problem, found: Prospects, chosen: Mapping[str, Option]) -> dict[str, str]:
-    """Why each changed patch had to be changed: what its whole, unsplit self would meet."""
-    reasons = {}
-    for patch, option in chosen.items():
-        if option.variant is not None and option.cost == 0.0:
-            continue
-        obstacles = {
-            name
-            for x in found.lanes[patch]
-            if option.variant is None
-            or (x.variant.hinges, x.variant.side) == (option.variant.hinges, option.variant.side)
-            for name in found.obstacles[x.number]
-        }
-        if obstacles:
-            reasons[patch] = "because of " + ", ".join(sorted(obstacles)[:3])
-        elif option.variant is None or option.window != (0, problem.options.shrink_steps):
-            others = sorted(p for p in chosen if p != patch and chosen[p].variant is not None)
-            reasons[patch] = "to let " + ", ".join(others[:3]) + " fold through it" if others else ""
-        else:
-            reasons[patch] = "to come straight down"
-    return reasons

@@ -1,0 +1,76 @@
+"""The conflict graph of a unit in some surroundings, with what simulations have added to it (section 5.4)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from foldfab.folding.choose import Combination, cheapest
+from foldfab.folding.conflict import compare, neighbours, table, windows_table
+from foldfab.folding.options import options_of
+from foldfab.folding.problem import Problem
+from foldfab.folding.prospects import Prospects
+from foldfab.folding.realise import Clash
+from foldfab.folding.repertoire import Lane, Repertoire
+from foldfab.geometry.arrays import Array, Bools
+
+Lesson = tuple[Clash, tuple[tuple[Lane, tuple[int, int]] | None, ...]]
+"""A clash and what was chosen for each patch of the unit."""
+
+
+class Graph:
+    """The conflict graph of a unit in some surroundings, with what simulations have added to it."""
+
+    def __init__(
+        self, problem: Problem, own: Repertoire, found: Prospects, offset: Array, learned: Iterable[Lesson] = ()
+    ) -> None:
+        self.patches = own.unit.patches
+        options = options_of(problem, found, offset)
+        self.options = [options[p] for p in self.patches]
+        self.costs: list[Array] = [o.weight.copy() for o in self.options]
+        compare(problem, own, (x for many in found.lanes.values() for x in many))
+        inside = windows_table(self.options[0].windows, problem.options.shrink_steps)
+        place = {p: g for g, p in enumerate(self.patches)}
+        self.tables: dict[tuple[int, int], Bools] = {}
+        for a, b in neighbours(own, found.lanes):
+            made = table(problem, own, found.lanes[a], found.lanes[b], inside)
+            if made is not None:
+                self.tables[place[a], place[b]] = made
+        self.forbidden: set[Combination] = set()
+        self.learned: list[Lesson] = []
+        for clash, places in learned:
+            self.learn(tuple(o.index(place) for o, place in zip(self.options, places, strict=True)), clash)
+
+    def cheapest(self) -> tuple[int, ...] | None:
+        """The cheapest choice, one option a patch."""
+        return cheapest(self.costs, self.tables, frozenset(self.forbidden))
+
+    def weight(self, picked: tuple[int, ...]) -> float:
+        """What a choice counts in the search."""
+        return float(sum(o.weight[i] for o, i in zip(self.options, picked, strict=True)))
+
+    def learn(self, picked: tuple[int, ...], clash: Clash) -> None:
+        """Adds what a simulation found: what is too wide for its neighbours is so when it is still wider."""
+        self.learned.append((clash, tuple(o.place(i) for o, i in zip(self.options, picked, strict=True))))
+        place = {p: g for g, p in enumerate(self.patches)}
+        for patches in clash.patches:
+            groups = sorted(place[p] for p in patches)
+            alike = [self._alike(g, picked[g], clash) for g in groups]
+            if len(groups) == 1:
+                self.costs[groups[0]][alike[0]] = np.inf
+            elif len(groups) == 2:
+                g, h = groups
+                shape = (len(self.costs[g]), len(self.costs[h]))
+                own = self.tables[g, h].copy() if (g, h) in self.tables else np.zeros(shape, dtype=bool)
+                own[np.ix_(*alike)] = True
+                self.tables[g, h] = own
+            else:
+                self.forbidden.add(tuple((g, picked[g]) for g in groups))
+
+    def _alike(self, group: int, index: int, clash: Clash) -> list[int]:
+        """The options of a patch that a clash of the one at `index` rules out as well."""
+        options = self.options[group]
+        if clash.holds_for == "this" or index == len(options.price) - 1:
+            return [index]
+        return options.like(index, wider=clash.holds_for == "wider windows")

@@ -86,6 +86,10 @@ class Master:
         terms += [self._is_before(*pair) for pair in cut.order]
         self.model.add(sum(terms) <= len(terms) - 1)
 
+    def treat_alike(self, p: str, q: str, apart: Bools) -> None:
+        """Demands options of two patches that are not apart (n, m)."""
+        self._exclude(p, q, apart)
+
     def at_least(self, terms: Mapping[str, Array], least: float) -> None:
         """Demands that the weights (n,) of the options of some patches add up to no less."""
         every = [

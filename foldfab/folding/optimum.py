@@ -29,6 +29,7 @@ from foldfab.folding.reasons import reasons_of
 from foldfab.folding.repertoire import Lane, extend, repertoire
 from foldfab.folding.scene import Scene, shown
 from foldfab.folding.surroundings import Surroundings, depends_on, held_up, look
+from foldfab.folding.symmetry import unlike
 from foldfab.folding.tree import between
 from foldfab.folding.unit_fold import UnitFold
 from foldfab.folding.units import Unit
@@ -185,6 +186,13 @@ def _posed(group: _Group) -> tuple[dict[str, Options], Master]:
     worth = {p: np.nonzero(o.weight - o.weight.min() <= spare)[0].tolist() for p, o in options.items()}
     worth = {p: keep if np.isfinite(spare) else _finite(options[p]) for p, keep in worth.items()}
     master = Master({u.name: u.patches for u in group.units}, options, tables, worth)
+    for patch, twin in sorted(problem.twins.items()):
+        if patch < twin.patch and patch in options and twin.patch in options:
+            master.treat_alike(
+                patch,
+                twin.patch,
+                unlike(options[patch], options[twin.patch], problem.options.shrink_steps, is_reversed=twin.is_reversed),
+            )
     for unit in group.units:
         master.at_least({p: options[p].weight for p in unit.patches}, group.floor[unit.name])
     for lesson in group.lessons:

@@ -17,6 +17,7 @@ from foldfab.folding.repertoire import repertoire
 from foldfab.folding.scene import open_scene
 from foldfab.folding.site import sites, slab
 from foldfab.folding.soundness import disconnected, hangs_together, rigid_patches
+from foldfab.folding.symmetry import twins
 from foldfab.folding.tree import unit_tree
 from foldfab.folding.unit_fold import UnitFold
 from foldfab.folding.units import decompose
@@ -95,11 +96,12 @@ def posed(scaffold: Scaffold, thickness: Thickness) -> Problem:
     plates = [anatomy.base_boxes(base, thickness) for base in scaffold.bases]
     furniture = stacked([*plates, *(slab(site, thickness) for site in placed.values())])
     low, high = bounds(furniture)
-    return Problem(
+    problem = Problem(
         scaffold, scaffold.recipe.fold, thickness, placed, units, tree, {p: u for u in units for p in u.patches},
         {part.name: part for part in scaffold.recipe.parts},
         {base.name: anatomy.faces(base, thickness) for base in scaffold.bases}, furniture, (low.min(0), high.max(0)),
     )  # fmt: skip
+    return replace(problem, twins=twins(problem))
 
 
 def _require_variants(problem: Problem) -> None:

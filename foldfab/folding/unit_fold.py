@@ -137,7 +137,7 @@ def _fold(
     if standing:
         return Refusal(unit, f"{standing} stands in the way unfolded")
     found = prospects(problem, own, around, in_place=in_place)
-    graph = Graph(problem, own, found, around.offset)
+    graph = Graph(problem, own, found, around.offset, chosen=scene.chosen)
     why: list[str] = []
     for _ in range(ROUNDS):
         picked = graph.cheapest()
@@ -145,7 +145,7 @@ def _fold(
             for patch in wanted:
                 extend(problem, own, patch)
             found = prospects(problem, own, around, in_place=in_place)
-            graph = Graph(problem, own, found, around.offset, graph.learned)
+            graph = Graph(problem, own, found, around.offset, graph.learned, scene.chosen)
             picked = graph.cheapest()
         if picked is None:
             break

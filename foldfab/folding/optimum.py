@@ -29,7 +29,7 @@ from foldfab.folding.reasons import reasons_of
 from foldfab.folding.repertoire import Lane, extend, repertoire
 from foldfab.folding.scene import Scene, shown
 from foldfab.folding.surroundings import Surroundings, depends_on, held_up, look
-from foldfab.folding.symmetry import unlike
+from foldfab.folding.symmetry import Signature, is_less, signature, unlike
 from foldfab.folding.tree import between
 from foldfab.folding.unit_fold import UnitFold
 from foldfab.folding.units import Unit
@@ -70,6 +70,8 @@ class _Group:
     lanes: dict[str, tuple[Lane, ...]]
     """By patch; those on plinths are added as they are asked for."""
     lessons: list[_Lesson] = field(default_factory=list)
+    excluded: tuple[Mapping[str, Signature], ...] = ()
+    """Modifications of all patches that are not asked for again, nor with less left of them."""
 
 
 def optimal(
@@ -107,6 +109,16 @@ def optimal(
     if not is_whole:
         return known, bound
     return Ordered(tuple(folds[n] for n in order), ()), bound
+
+
+def other(
+    problem: Problem, scene: Scene, floor: Mapping[str, float], excluded: tuple[Mapping[str, Signature], ...],
+    most: float, work: float,
+) -> tuple[Ordered | None, float]:  # fmt: skip
+    """The best order with other modifications than those excluded that counts less than `most`, and its bound."""
+    group = replace(_group(problem, scene, [], dict(floor), most), excluded=excluded)
+    folds, bound = _solved(group, work)
+    return (Ordered(folds, ()) if folds is not None else None), bound
 
 
 def _weight(known: Ordered) -> float:
@@ -195,6 +207,11 @@ def _posed(group: _Group) -> tuple[dict[str, Options], Master]:
             )
     for unit in group.units:
         master.at_least({p: options[p].weight for p in unit.patches}, group.floor[unit.name])
+    for one in group.excluded:
+        alike = (
+            (p, tuple(i for i in range(len(o.price)) if is_less(signature(o[i]), one[p]))) for p, o in options.items()
+        )
+        master.add(Cut(tuple(alike), ()))
     for lesson in group.lessons:
         master.add(_cut(options, lesson))
     return options, master

@@ -65,7 +65,7 @@ def _solved(scaffold: Scaffold, thickness: Thickness) -> FoldSolution:
         ordered, bound = _ordered(problem)
         met = first_clash(problem, open_scene(problem), ordered.folds)
         if met is None:
-            return _solution(problem, bound, ordered)
+            return solution(problem, bound, ordered)
         problem = replace(problem, banned=problem.banned | {met}, repertoires={}, solved={}, hopeless={})
     told = ", ".join(sorted({patch for patch, _ in problem.banned}))
     raise FoldingError(f"no folding solution found: {told} stay in the way of what folds before; try another thickness")
@@ -127,7 +127,8 @@ def _refused(ordered: Ordered) -> str:
     return "no folding solution: " + "; ".join(told)
 
 
-def _solution(problem: Problem, least: float, ordered: Ordered) -> FoldSolution:
+def solution(problem: Problem, least: float, ordered: Ordered) -> FoldSolution:
+    """The solution that an order of folds makes, no order counting less than `least` in the search."""
     chains = tuple(sorted((c for f in ordered.folds for c in f.chains), key=lambda c: c.patch))
     changed = [_modification(problem, fold, patch) for fold in ordered.folds for patch in fold.unit.patches]
     changed.sort(key=lambda m: m.patch)

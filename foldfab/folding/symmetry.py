@@ -50,6 +50,12 @@ def signature(option: Option) -> Signature:
     return (v.mechanism, v.hinges, option.window) if v is not None else ("deleted", 0, (0, 0))
 
 
+def is_less(first: Signature, second: Signature) -> bool:
+    """Whether the first is the second, or only leaves less of the patch."""
+    (how, hinges, (low, high)), (other, more, (least, most)) = first, second
+    return how == "deleted" or ((how, hinges) == (other, more) and least <= low and high <= most)
+
+
 def mirrored(own: Signature, steps: int, *, is_reversed: bool) -> Signature:
     """The signature that the mirror image has to have."""
     mechanism, hinges, (low, high) = own

@@ -62,12 +62,29 @@ def test_every_unit_folds_once_and_together_they_fill_the_time(solution: Make, n
 
 
 @pytest.mark.parametrize("name", ["box_with_table", "shelf", "tower"])
-def test_what_another_unit_carries_moves_along_with_it(solution: Make, name: str) -> None:
+def test_only_bases_that_move_travel_and_the_lowest_one_never_does(solution: Make, name: str) -> None:
     made = solution(name)
-    lowest = made.scaffold.bases[0].name
-    for step in made.steps:
-        assert set(step.travel) == {base.name for base in made.scaffold.bases}
-        assert not step.travel[lowest].any()
+    assert all(way.any() for step in made.steps for way in step.travel.values())
+    assert made.scaffold.bases[0].name not in {base for step in made.steps for base in step.travel}
+
+
+@pytest.mark.parametrize(
+    ("name", "unit", "moving"),
+    [
+        ("box_with_table", "leg-left", {"top"}),
+        ("box_with_table", "left", {"ceiling"}),
+        ("shelf", "a", {"middle", "high"}),
+        ("shelf", "c", {"high"}),
+        ("tower", "a", {"middle", "high"}),
+    ],
+)
+def test_what_another_unit_carries_moves_along_with_it(
+    solution: Make, name: str, unit: str, moving: set[str]
+) -> None:
+    (step,) = [step for step in solution(name).steps if step.unit == unit]
+    assert set(step.travel) == moving
+    first, *others = step.travel.values()
+    assert all((way == first).all() for way in others)
 
 
 def test_the_upper_shelf_comes_down_with_the_lower_one(solution: Make) -> None:

@@ -3,9 +3,9 @@
 At each step the unit is taken that minimises C1 + C2: its own cost now, plus the costs of all the others if it were
 folded. Where no unit can fold, the remaining ones are merged into one and fold in place.
 
-What a unit can do alone bounds its cost from below. So only those others are solved anew in the look-ahead that would see
-the unit folded, and the look-ahead ends where no other unit can be better. With k units that see each other and n in all
-this takes O(n k) solutions where costs stay at their bounds, and O(n²) of the paper's at worst.
+What a unit can do alone bounds its cost from below. So only those others are solved anew in the look-ahead that would
+see the unit folded, and the look-ahead ends where no other unit can be better. With k units that see each other and n
+in all this takes O(n k) solutions where costs stay at their bounds, and O(n²) of the paper's at worst.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def floors(problem: Problem) -> dict[str, float]:
 
 
 def tight_floors(problem: Problem, scene: Scene) -> dict[str, float]:
-    """By unit, what it counts where nothing but itself is there and it is played through: no order lets it fold for less."""
+    """By unit, what it counts where it is all alone and is played through: no order lets it fold for less."""
     return {u.name: _weight(fold_unit(problem, alone(scene, u), u)) for u in problem.units}
 
 
@@ -124,7 +124,7 @@ def _look_again(state: _State, unit: Unit) -> None:
 
 
 def _still_holds(state: _State, fold: UnitFold) -> bool:
-    """Whether the unit sees what it saw when its fold was found; where something has come near since, it looks again."""
+    """Whether the unit sees what it saw when its fold was found; where something has come near, it looks again."""
     unit = fold.unit
     if look(state.problem, state.scene, repertoire(state.problem, unit)).key == state.keys[unit.name]:
         return True
@@ -173,7 +173,7 @@ def _change(state: _State, fold: UnitFold) -> float:
 
 
 def _final(state: _State, fold: UnitFold) -> UnitFold:
-    """The fold as the furniture stands now: what looked the same before may differ in what sticks out of the outline."""
+    """The fold as the furniture stands now: what looked the same may differ in what sticks out of the outline."""
     own = repertoire(state.problem, fold.unit)
     slants = any(o.variant is not None and o.variant.mechanism == "slanted" for o in fold.chosen.values())
     if not slants or not state.scene.moved(fold.unit.bases[0]).any():

@@ -18,7 +18,7 @@ from foldfab.folding.problem import Problem
 from foldfab.folding.repertoire import Lane, Repertoire, cuts_of, far_shift, lane, stops_early, swept
 from foldfab.folding.space import Batch, blocked, carried
 from foldfab.folding.surroundings import Surroundings
-from foldfab.geometry.arrays import Array, Bools
+from foldfab.geometry.arrays import Bools
 
 PAD_SHARE = 0.4
 """Plinths may take at most this share of the height between two bases; beyond it nothing flat is left."""
@@ -158,7 +158,7 @@ def _raise_partners(
     met: dict[int, set[int]],
 ) -> None:  # fmt: skip
     """Slanted lanes drag their base together: where one stands on plinths, the others may as well."""
-    wanted = sorted({x.variant for many in lanes.values() for x in many if x.drag is not None and sum(x.variant.pads)})
+    wanted = sorted({x.variant for many in lanes.values() for x in many if x.drag is not None and any(x.variant.pads)})
     for patch, many in lanes.items():
         made = {x.variant for x in many}
         found = (lane(problem, own, patch, v) for v in wanted if v not in made)

@@ -17,8 +17,8 @@ from foldfab.folding.repertoire import repertoire
 from foldfab.folding.scene import open_scene
 from foldfab.folding.site import sites, slab
 from foldfab.folding.soundness import disconnected, rigid_patches
-from foldfab.folding.unit_fold import UnitFold
 from foldfab.folding.tree import unit_tree
+from foldfab.folding.unit_fold import UnitFold
 from foldfab.folding.units import decompose
 from foldfab.geometry.boxes import bounds, stacked
 from foldfab.scaffold.model import Scaffold

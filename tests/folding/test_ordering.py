@@ -78,9 +78,7 @@ def test_only_bases_that_move_travel_and_the_lowest_one_never_does(solution: Mak
         ("tower", "a", {"middle", "high"}),
     ],
 )
-def test_what_another_unit_carries_moves_along_with_it(
-    solution: Make, name: str, unit: str, moving: set[str]
-) -> None:
+def test_what_another_unit_carries_moves_along_with_it(solution: Make, name: str, unit: str, moving: set[str]) -> None:
     (step,) = [step for step in solution(name).steps if step.unit == unit]
     assert set(step.travel) == moving
     first, *others = step.travel.values()

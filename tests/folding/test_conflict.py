@@ -126,7 +126,7 @@ def test_so_they_do_in_units_of_several_levels(
 def test_it_does_not_matter_in_which_order_lanes_are_compared(
     problem: Make, levels: tuple[Part, ...], close: tuple[Part, ...]
 ) -> None:
-    for parts in (levels, close):
+    for parts in (levels, close, "corner", "deep_box"):
         at_once = compared(problem(parts, shrink_steps=STEPS))
         made = problem(parts, shrink_steps=STEPS)
         own = only(made)
@@ -196,10 +196,18 @@ def test_patches_far_apart_have_no_conflicts_when_they_fold_in_place(problem: Ma
     assert table(made, own, own.plain["left"], own.plain["right"], inside) is None
 
 
-def test_patches_that_may_drag_their_base_are_neighbours(problem: Make) -> None:
-    made = problem("same_way")
-    own = compared(made)
-    assert neighbours(own, own.plain) == [("far", "near")]
+@pytest.mark.parametrize(
+    ("slanting", "max_hinges", "expected"),
+    [(True, 1, [("left", "right")]), (False, 5, [("left", "right")]), (False, 1, [])],
+)
+def test_patches_are_neighbours_that_may_drag_their_base_or_snap_differently(
+    problem: Make, slanting: bool, max_hinges: int, expected: list[tuple[str, str]]
+) -> None:
+    """Although none of their panels ever meet."""
+    made = problem("box_with_table", slanting=slanting, max_hinges=max_hinges)
+    own = repertoire(made, made.unit_of["left"])
+    compare(made, own, own.lanes)
+    assert not own.pieces and neighbours(own, own.plain) == expected
 
 
 def test_neighbours_are_all_pairs_whose_tables_are_not_empty(problem: Make, levels: tuple[Part, ...]) -> None:

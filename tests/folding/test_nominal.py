@@ -61,17 +61,19 @@ def test_plates_over_one_another_never_meet(problem: Make, name: str) -> None:
             assert (clear_height(made, a, b) + found.down[b] - found.down[a] >= made.thickness.gap - 1e-9).all()
 
 
-def test_a_board_under_which_nothing_stands_stops_above_the_one_below_it(
+def test_boards_that_no_wall_keeps_apart_stop_above_each_other(
     problem: Make, board_at: Callable[..., Part], wall_at: Callable[..., Part]
 ) -> None:
-    """The short wall beside it would let the upper board down into the lower one, which no wall holds there."""
+    """Two shelves that overlap: the walls that hold each from below and above would let them into each other."""
     parts = (
-        board_at("low", 0), board_at("shelf", 60, 80, x=50), board_at("high", 124),
-        wall_at("side", -60, 0, 124), wall_at("short", 50, 60, 124), wall_at("foot", 30, 0, 60),
+        board_at("low", 0), board_at("left", 44, 60, x=-20), board_at("right", 84, 60, x=20), board_at("top", 128),
+        wall_at("a", -35, 0, 44), wall_at("b", -40, 44, 128), wall_at("c", 35, 0, 84), wall_at("d", 40, 84, 128),
     )  # fmt: skip
     made = problem(parts)
     (unit,) = made.units
     found = nominal(made, unit)
-    assert unit.bases == ("low", "shelf", "high")
-    # Both boards lie on what is below them, the side's stack is shorter than that.
-    assert clear_height(made, "low", "high") + found.down["high"][-1, -1] == pytest.approx(2 * STACK + 4.0)
+    assert unit.bases == ("low", "left", "right", "top")
+    assert clear_height(made, "left", "right") + found.down["right"][-1, -1] - found.down["left"][-1, -1] == (
+        pytest.approx(made.thickness.gap)
+    )
+    assert clear_height(made, "low", "right") + found.down["right"][-1, -1] > STACK

@@ -206,3 +206,17 @@ def test_a_single_unit_that_cannot_fold_is_not_merged_with_itself(
     monkeypatch.setattr(ordering, "fold_seen", lambda *_, **__: refusal)
     found = greedy(made, open_scene(made), floors(made))
     assert found.folds == () and found.refusals == (refusal,)
+
+
+def test_what_is_in_the_way_of_others_folds_first_although_it_gains_nothing_itself(
+    solution: Make, board_at: Box, wall_at: Box, box: Box
+) -> None:
+    """Figure 14: flaps on either side of a wall, which could fold at once, but shrunk."""
+    parts = (
+        board_at("ground", 0, 300), board_at("ceiling", 84, 30), wall_at("a-wall", 0, 0, 84),
+        box("z-left", (-26, 0, 22), (4, 16, 40)), box("z-right", (26, 0, 22), (4, 16, 40)),
+    )  # fmt: skip
+    made = solution(parts, slanting=False)
+    # One of the flaps is enough.
+    assert order(made) == [("z-left",), ("a-wall",), ("z-right",)]
+    assert made.modification("a-wall").window == (0.0, 1.0)

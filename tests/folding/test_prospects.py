@@ -241,3 +241,16 @@ def test_what_is_carried_along_must_stay_in_the_box_as_well(
     for side in "+-":
         (x,) = pick(room.lanes["leg"], "slanted", side)
         assert room.blocked[x.number].all() and THE_BOX in room.obstacles[x.number]
+
+
+def test_what_hangs_comes_up_to_what_stays_in_the_box(
+    problem: Make, board_at: Callable[..., Part], wall_at: Callable[..., Part]
+) -> None:
+    """The tray is the lowest base of its unit, but it is the one that moves."""
+    parts = (
+        board_at("floor", -30, 60, 60, x=-120), wall_at("post", -120, -30, 64),
+        board_at("tray", 0, 60, 60, x=60), wall_at("hanger", 60, 0, 64), board_at("middle", 64, 320),
+    )  # fmt: skip
+    made = problem(parts, stay_in_box=True)
+    room = found(made, open_scene(made), "hanger", in_place=True)
+    assert room.lanes["hanger"] and not any(room.blocked[x.number].any() for x in room.lanes["hanger"])

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
+from foldfab.folding import anatomy, rehearsal
 from foldfab.folding import solve as solving
 from foldfab.folding.basic import Variant
 from foldfab.folding.model import FoldSolution
 from foldfab.folding.problem import Problem
 from foldfab.folding.rehearsal import first_clash
 from foldfab.folding.scene import Scene, open_scene
+from foldfab.folding.surroundings import Surroundings
 from foldfab.folding.unit_fold import UnitFold
 from foldfab.scaffold.model import Scaffold
 
@@ -42,16 +45,39 @@ def test_a_table_that_is_folded_too_late_is_to_blame(problem: Make, folded: Fold
     assert patch in ("leg-left", "leg-right") and variant == table.chosen[patch].variant
 
 
-def test_a_later_patch_is_in_the_way_with_the_hinges_that_it_has(problem: Make, folded: Folded) -> None:
-    """A wall that stands so close to the table that only its knuckle reaches into the table's fold."""
+def test_later_units_are_shown_open_with_the_hinges_that_they_have(
+    problem: Make, folded: Folded, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A wall that stands in the table's fold, as it became and not as it was."""
     made = problem("box_with_table", slanting=False)
     table, walls = folds_of(made, folded)
-    # Out to where the elbows of the table's legs come, on their left.
-    reach = min(float(c.root[0] - c.lengths.max()) for c in table.chains)
-    moved = tuple(replace(c, root=np.array([reach, *c.root[1:]])) if c.patch == "left" else c for c in walls.chains)
-    assert first_clash(made, open_scene(made), (table, walls)) is None
-    crowded = replace(walls, chains=moved)
-    assert first_clash(made, open_scene(made), (table, crowded)) == ("left", walls.chosen["left"].variant)
+    near = tuple(
+        replace(c, root=c.root + np.array([100.0, 0.0, 0.0])) if c.patch == "left" else c for c in walls.chains
+    )
+    (wall,) = (c for c in near if c.patch == "left")
+    seen: list[Surroundings] = []
+
+    def watch(*given: Any) -> list[tuple[str, str]]:
+        seen.append(given[4])
+        return []
+
+    monkeypatch.setattr(rehearsal, "clashes", watch)
+    assert first_clash(made, open_scene(made), (table, replace(walls, chains=near))) is None
+    during_table, during_walls = seen
+    (shown, *_) = [s for s in during_table.solids if s.owner == "left"]
+    assert shown.state == "open"
+    assert shown.boxes.center == pytest.approx(anatomy.resting_boxes(wall, made.thickness, 0.0).center)
+    assert {s.state for s in during_walls.solids if s.owner.startswith("leg")} == {"folded"}
+
+
+def test_who_stands_in_the_way_later_is_to_blame(problem: Make, folded: Folded) -> None:
+    made = problem("box_with_table", slanting=False)
+    table, walls = folds_of(made, folded)
+    near = tuple(
+        replace(c, root=c.root + np.array([100.0, 0.0, 0.0])) if c.patch == "left" else c for c in walls.chains
+    )
+    found = first_clash(made, open_scene(made), (table, replace(walls, chains=near)))
+    assert found == ("left", walls.chosen["left"].variant)
 
 
 def test_what_is_learned_has_no_plinths(problem: Make, folded: Folded) -> None:

@@ -190,8 +190,9 @@ def test_awkward_is_what_leaves_the_furniture_and_what_stands_high(problem: Make
     size = float(np.linalg.norm(made.outline[1] - made.outline[0]))
     # The ceiling is dragged as far to the side as the leg is long.
     assert none == 0.0 and out == pytest.approx((80 - 2 * 2.3) / size) and high == pytest.approx(2 * 5.0 / size)
-    (carried,) = awkwardness(made, (inside,), np.array([150.0, 0.0, 0.0])).tolist()
-    assert carried > 0
+    for away in (150.0, -150.0):
+        (carried,) = awkwardness(made, (inside,), np.array([away, 0.0, 0.0])).tolist()
+        assert carried == pytest.approx(150.0 / size)
 
 
 def test_what_would_leave_the_outline_is_known(problem: Make) -> None:

@@ -194,3 +194,24 @@ def test_a_slanted_fold_is_carried_into_what_its_base_carries(
         chain = whole(made, "wall", 0, towards, "slanted")
         found.append(met(made, scene, unit, (chain,), press.slanted(unit.bases, (chain,))))
     assert ("flap", "hanging") in found[0] and ("flap", "hanging") not in found[1]
+
+
+def test_chains_that_rest_are_found_in_what_stands_around_and_in_each_other(problem: Make, folded: Folded) -> None:
+    made = problem("box_with_table", slanting=False)
+    unit = made.unit_of["left"]
+    wall = whole(made, "left", 1, 1.0)
+    inside = replace(wall, root=wall.root + np.array([110.0, 0.0, 0.0]))
+    motion = played(made, unit, (wall,), {"ground": 0.0, "ceiling": 91.1})
+    still = replace(
+        motion, fold={"left": np.zeros(len(motion.samples))}, shift={b: 0 * w for b, w in motion.shift.items()}
+    )
+    assert met(made, open_scene(made), unit, (inside,), still) == {("left", "leg-left"), ("left", "top")}
+    assert met(made, open_scene(made), unit, (wall,), still) == set()
+    made = problem("three_walls")
+    _, ((scene, fold),) = folded(made)
+    # The back reaches through both side walls; only the right one moves.
+    chains = tuple(widened(c, -115.0, 115.0) if c.patch == "back" else c for c in fold.chains)
+    moving = {p: f if p == "right" else 0 * f for p, f in fold.motion.fold.items()}
+    fixed = replace(fold.motion, fold=moving, shift={b: 0 * w for b, w in fold.motion.shift.items()})
+    assert ("back", "left") in met(made, scene, fold.unit, chains, fixed)
+    assert ("back", "left") not in met(made, scene, fold.unit, fold.chains, fixed)

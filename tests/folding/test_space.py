@@ -71,16 +71,21 @@ def not_at_all(shape: tuple[int, int]) -> Bools:
     return np.zeros(shape, dtype=bool)
 
 
-@given(seeds, directions)
+@given(seeds, directions, st.sampled_from([3, 20_000]))
 @steady
-def test_pieces_of_lanes_conflict_exactly_where_the_exact_test_says(seed: int, direction: tuple[int, int]) -> None:
+def test_pieces_of_lanes_conflict_exactly_where_the_exact_test_says(
+    seed: int, direction: tuple[int, int], chunk: int
+) -> None:
+    """However few boxes are looked at in one go."""
     a, b = panels(seed), panels(seed + 1, *direction, first=LANES)
     expected = {
         (one, other): np.zeros((STEPS, STEPS), dtype=bool) for one in range(LANES) for other in range(LANES, 2 * LANES)
     }
     for (_, one, s, p), (_, other, t, q) in itertools.product(pieces(a, CUTS), pieces(b, CUTS)):
         expected[one, other][s, t] |= bool(overlaps(p, q).any())
-    found = conflicts(a, b, CUTS, not_at_all((2 * LANES, 2 * LANES)))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(space, "CHUNK", chunk)
+        found = conflicts(a, b, CUTS, not_at_all((2 * LANES, 2 * LANES)))
     assert {k: v.tolist() for k, v in found.items()} == {k: v.tolist() for k, v in expected.items() if v.any()}
 
 

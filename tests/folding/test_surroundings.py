@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -188,3 +189,41 @@ def test_a_dragged_base_brushes_what_stands_beside_it(
     made, straight = problem(parts), problem(parts, slanting=False)
     assert ("flap", "open") in owners(seen(made, open_scene(made), "wall"))
     assert ("flap", "open") not in owners(seen(straight, open_scene(straight), "wall"))
+
+
+def test_what_may_come_down_on_something_is_seen_however_far_it_is_from_the_patches(
+    problem: Make, board_at: Callable[..., Part], wall_at: Callable[..., Part], box: Callable[..., Part]
+) -> None:
+    parts = (
+        board_at("ground", 0, 600), board_at("ceiling", 84, 600), wall_at("wall", -280, 0, 84),
+        box("flap", (250, 0, 30), (4, 40, 56)),
+    )  # fmt: skip
+    made = problem(parts, slanting=False)
+    around = seen(made, open_scene(made), "wall")
+    assert ("flap", "open") in owners(around)
+    assert held_up(made, made.unit_of["wall"], around.limits) == "flap"
+
+
+def test_a_unit_depends_on_what_carries_a_board_near_it(
+    problem: Make, board_at: Callable[..., Part], wall_at: Callable[..., Part]
+) -> None:
+    """The end of a long tray reaches into the fold; the wall that holds it stands far away."""
+    parts = (
+        board_at("ground", 0, 600), board_at("tray", 44, 515, x=42.5), wall_at("far", 280, 0, 44),
+        board_at("ceiling", 84, 60, x=-250), wall_at("wall", -250, 0, 84),
+    )  # fmt: skip
+    made = problem(parts, slanting=False)
+    around = seen(made, open_scene(made), "wall")
+    assert owners(around) == {("ground", "base"), ("ceiling", "base"), ("tray", "base")}
+    assert depends_on(made, made.unit_of["wall"], around) == {"far"}
+
+
+def test_the_key_says_what_is_gone_and_only_in_the_box_where_the_unit_is(problem: Make) -> None:
+    for stay_in_box in (True, False):
+        made = problem("tower", stay_in_box=stay_in_box)
+        scene = open_scene(made)
+        key = seen(made, scene, "b").key
+        assert seen(made, scene, "b").key == key
+        assert seen(made, replace(scene, gone=frozenset({"a"})), "b").key != key
+        lower = replace(scene, offset=scene.offset - np.array([0.0, 0.0, 5.0]))
+        assert (seen(made, lower, "b").key != key) == stay_in_box

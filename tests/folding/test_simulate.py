@@ -209,8 +209,10 @@ def test_chains_that_rest_are_found_in_what_stands_around_and_in_each_other(prob
     assert met(made, open_scene(made), unit, (wall,), still) == set()
     made = problem("three_walls")
     _, ((scene, fold),) = folded(made)
-    # The back reaches through both side walls; only the right one moves.
-    chains = tuple(widened(c, -115.0, 115.0) if c.patch == "back" else c for c in fold.chains)
+    # The back stands between the side walls and reaches through both; only the right one moves.
+    chains = tuple(
+        replace(widened(c, -115.0, 115.0), root=c.root * [1, 0, 1]) if c.patch == "back" else c for c in fold.chains
+    )
     moving = {p: f if p == "right" else 0 * f for p, f in fold.motion.fold.items()}
     fixed = replace(fold.motion, fold=moving, shift={b: 0 * w for b, w in fold.motion.shift.items()})
     assert ("back", "left") in met(made, scene, fold.unit, chains, fixed)

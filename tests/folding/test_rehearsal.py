@@ -100,3 +100,14 @@ def test_who_is_blamed_folds_another_way_next_time(
     monkeypatch.setattr(solving, "first_clash", lambda *_: told.pop(0))
     now = solving.solve(scaffold("h_scaffold", slanting=False)).modification("leg")
     assert not told and (now.hinges, now.side) == (1, "l" if first.side == "r" else "r")
+
+
+def test_of_two_patches_that_meet_the_later_one_is_to_blame(
+    problem: Make, folded: Folded, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = problem("box_with_table", slanting=False)
+    table, walls = folds_of(made, folded)
+    monkeypatch.setattr(rehearsal, "clashes", lambda *_: [("leg-left", "left"), ("leg-right", "right")])
+    assert first_clash(made, open_scene(made), (table, walls)) == ("left", walls.chosen["left"].variant)
+    found = first_clash(made, open_scene(made), (walls, table))
+    assert found == ("leg-left", table.chosen["leg-left"].variant)

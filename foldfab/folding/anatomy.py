@@ -95,7 +95,8 @@ def resting_boxes(chain: Chain, thickness: Thickness, progress: float) -> Boxes:
 
 def swept_boxes(chain: Chain, thickness: Thickness, progress: Array, near: Array, far: Array | None) -> Boxes:
     """Panels, knuckles and feet (k, n) of a chain while its anchor and its far base are translated by `near` and `far`
-    (k, 3)."""
+    (k, 3).
+    """
     panels = moving_boxes(chain, thickness, progress)
     feet = [(anchor_feet(chain, thickness), near)]
     if far is not None:

@@ -52,7 +52,7 @@ def cheapest(
     alive = [_undominated(costs[g], table[g], held[g]) for g in range(len(costs))]
     taken: dict[int, int] = {}
     for groups in _islands(alive, table, forbidden):
-        if len(groups) == 1:
+        if len(groups) == 1 and not held[groups[0]]:
             price = np.where(alive[groups[0]], costs[groups[0]], np.inf)
             best: dict[int, int] | None = {groups[0]: int(np.argmin(price))} if np.isfinite(price).any() else None
         else:
@@ -91,11 +91,10 @@ def _undominated(price: Array, conflicts: Mapping[int, Bools], held: list[int]) 
     free = np.ones(len(price), dtype=bool)
     free[held] = False
     excludes = np.concatenate([np.zeros((len(rest), 1), dtype=bool), *(m[rest] for m in conflicts.values())], axis=1)
-    if not excludes[0].any() if len(rest) else False:
-        # The cheapest option of all excludes nothing: it dominates every other one unless it is held.
-        if free[rest[0]]:
-            alive[rest[1:]] = False
-            return alive
+    if len(rest) and free[rest[0]] and not excludes[0].any():
+        # The cheapest option of all excludes nothing: it dominates every other one.
+        alive[rest[1:]] = False
+        return alive
     columns = excludes[:, excludes.any(0)].astype(np.float32)
     more = columns @ (1 - columns).T > 0
     is_first = np.triu(np.ones((len(rest), len(rest)), dtype=bool), 1)

@@ -2,8 +2,8 @@
 
 Two options conflict where their panels meet while both fold, where they drag the upper base along different ways
 (figure 12), or, with thickness, where their accordions snap so differently that the play in their hinges cannot
-cover it. Options of one patch form a clique and are never compared. What meets is found once for the pieces of all lanes
-of a unit together; tables between the options of two patches are made from that.
+cover it. Options of one patch form a clique and are never compared. What meets is found once for the pieces of all
+lanes of a unit together; tables between the options of two patches are made from that.
 """
 
 from __future__ import annotations

@@ -38,12 +38,12 @@ def proven(
     on = {(g, int(o)): model.new_bool_var(f"{g}/{o}") for g, left in alive.items() for o in np.nonzero(left)[0]}
     for g, left in alive.items():
         model.add_exactly_one(on[g, int(o)] for o in np.nonzero(left)[0])
-    for g, h, excluded in ((g, h, m) for g in alive for h, m in sorted(table[g].items(), key=lambda item: item[0])):
-        if g < h and h in alive:
-            for o in np.nonzero(alive[g])[0]:
-                others = np.nonzero(excluded[o] & alive[h])[0]
-                if len(others):
-                    model.add_at_most_one([on[g, int(o)], *(on[h, int(p)] for p in others)])
+    pairs = [(a, b) for a in alive for b in sorted(table[a]) if a < b and b in alive]
+    for g, h in pairs:
+        for o in np.nonzero(alive[g])[0]:
+            others = np.nonzero(table[g][h][o] & alive[h])[0]
+            if len(others):
+                model.add_at_most_one([on[g, int(o)], *(on[h, int(p)] for p in others)])
     for combination in forbidden:
         if all(key in on for key in combination):
             model.add_bool_or([~on[key] for key in combination])

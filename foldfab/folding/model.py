@@ -202,7 +202,7 @@ class Step:
     samples: Array
     """(k,) local times from 0 to 1."""
     travel: dict[str, Array]
-    """By base that moves, (k, 3) translation since the start of the step, mm; bases that move together share one array."""
+    """By base that moves, (k, 3) translation since the start of the step, mm; those moving together share an array."""
     fold: dict[str, Array]
     """By patch of the unit that is kept, (k,) fold progress s."""
     play: dict[str, Array]

@@ -1,7 +1,7 @@
 """The nominal fold of a unit: how its bases would come down if every chain were light (section 5.4, figure 11a).
 
-The conflict graph is drawn along it, before anything is chosen. The time of the unit falls into sections, from the start
-of one base to the start of the next; each has the same number of frames.
+The conflict graph is drawn along it, before anything is chosen. The time of the unit falls into sections, from the
+start of one base to the start of the next; each has the same number of frames.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from foldfab.folding import anatomy, press
 from foldfab.folding.problem import Problem, clear_height, clearances, levels
 from foldfab.folding.units import Unit
-from foldfab.geometry.arrays import Array
+from foldfab.geometry.arrays import Array, Bools
 from foldfab.geometry.boxes import bounds
 
 FRAMES = 17
@@ -55,6 +55,6 @@ def _plates_apart(problem: Problem, unit: Unit) -> dict[tuple[str, str], float]:
     corners = {b: bounds(anatomy.base_boxes(problem.scaffold.base(b), problem.thickness)) for b in unit.bases}
     low = np.array([c[0].min(0)[:2] for c in corners.values()])
     high = np.array([c[1].max(0)[:2] for c in corners.values()])
-    over = (low[:, None] < high).all(-1) & (low[None] < high[:, None]).all(-1)
+    over: Bools = (np.maximum(low[:, None], low) < np.minimum(high[:, None], high)).all(-1)
     pairs = itertools.combinations(range(len(unit.bases)), 2)
     return {(unit.bases[i], unit.bases[j]): problem.thickness.gap for i, j in pairs if over[i, j]}

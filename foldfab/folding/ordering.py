@@ -3,9 +3,9 @@
 At each step the unit is taken that minimises C1 + C2: its own cost now, plus the costs of all the others if it were
 folded. Where no unit can fold, the remaining ones are merged into one and fold in place.
 
-What a unit can do alone bounds its cost from below. So only those others are solved anew in the look-ahead that would see
-the unit folded, and the look-ahead ends where no other unit can be better. With k units that see each other and n in all
-this takes O(n k) solutions where costs stay at their bounds, and O(n²) of the paper's at worst.
+What a unit can do alone bounds its cost from below. So only those others are solved anew in the look-ahead that would
+see the unit folded, and the look-ahead ends where no other unit can be better. With k units that see each other and n
+in all this takes O(n k) solutions where costs stay at their bounds, and O(n²) of the paper's at worst.
 """
 
 from __future__ import annotations

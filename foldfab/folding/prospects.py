@@ -167,7 +167,7 @@ def _raise_partners(
     met: dict[int, set[int]],
 ) -> None:  # fmt: skip
     """Slanted lanes drag their base together: where one stands on plinths, the others may as well."""
-    wanted = sorted({x.variant for many in lanes.values() for x in many if x.drag is not None and sum(x.variant.pads)})
+    wanted = sorted({x.variant for many in lanes.values() for x in many if x.drag is not None and any(x.variant.pads)})
     for patch, many in lanes.items():
         made = {x.variant for x in many}
         found = (lane(problem, own, patch, v) for v in wanted if v not in made)

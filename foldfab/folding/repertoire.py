@@ -262,13 +262,12 @@ def _reach(problem: Problem, own: Repertoire) -> dict[str, tuple[Array, Array]]:
     margin = ROOM_THICKNESSES * (problem.thickness.panel + problem.thickness.gap)
     found = {b: (np.full(3, np.inf), np.full(3, -np.inf)) for b in own.unit.bases}
     for section in range(own.nominal.sections):
-        straight = swept(problem, own, (x for x in own.lanes if x.drag is None), section)
-        groups = [(straight, None, None)] if straight else []
-        for x in own.lanes:
-            if x.drag is not None:
-                groups.append((swept(problem, own, (x,), section), x.chain.far, x.drag))
-        for many, far, drag in groups:
-            assert many is not None
+        straight = [x for x in own.lanes if x.drag is None]
+        for group in (straight, *([x] for x in own.lanes if x.drag is not None)):
+            many = swept(problem, own, group, section)
+            if many is None:
+                continue
+            far, drag = group[0].chain.far, group[0].drag
             for base in own.unit.bases:
                 shift = drag if base == far and drag is not None else upright(own.nominal.down[base][section])
                 low = (many.low.min(1) - shift).min(0) - margin

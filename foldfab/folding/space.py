@@ -152,7 +152,7 @@ def conflicts(a: Batch, b: Batch, cuts: Array, excluded: Bools) -> dict[tuple[in
 
 
 def _fill(table: Bools, place: Indices, a: Boxes, cuts_a: Array, b: Boxes, cuts_b: Array) -> None:
-    """Marks in `table` (pairs, N_s, N_s) which pieces of overlapping boxes (k,) meet, `place` (k,) being their pairs."""
+    """Marks in `table` (pairs, N_s, N_s) which pieces of overlapping boxes (k,) meet; `place` (k,) is their pair."""
     low_a, high_a = _intervals(a, cuts_a)
     low_b, high_b = _intervals(b, cuts_b)
     cosine = np.einsum("kj,kj->k", a.axes[:, 1], b.axes[:, 1])
@@ -168,7 +168,7 @@ def _fill(table: Bools, place: Indices, a: Boxes, cuts_a: Array, b: Boxes, cuts_
     rest = np.nonzero(~same)[0]
     if len(rest):
         first, second = _pieces(a[rest], cuts_a[rest]), _pieces(b[rest], cuts_b[rest])
-        near = real[rest] & _bounds_meet(bounds(first), bounds(second))
+        near: Bools = real[rest] & _bounds_meet(bounds(first), bounds(second))
         # Most pieces that meet do so in many frames: a few of these tell for most pairs, the others need not be asked.
         for part in (slice(0, None, SAMPLE), slice(None)):
             row, s, t = np.nonzero(near[part] & ~table[place[rest[part]]])
@@ -179,8 +179,9 @@ def _fill(table: Bools, place: Indices, a: Boxes, cuts_a: Array, b: Boxes, cuts_
 
 def _bounds_meet(a: tuple[Array, Array], b: tuple[Array, Array]) -> Bools:
     """Which pieces (k, n) and (k, m) have bounds that overlap, (k, n, m)."""
-    near: Bools = (a[0][:, :, None] <= b[1][:, None]).all(-1) & (b[0][:, None] <= a[1][:, :, None]).all(-1)
-    return near
+    is_below: Bools = np.all(a[0][:, :, None] <= b[1][:, None], axis=-1)
+    is_above: Bools = np.all(a[1][:, :, None] >= b[0][:, None], axis=-1)
+    return is_below & is_above
 
 
 def _once(a: Batch, b: Batch, frame: Indices, p: Indices, q: Indices) -> tuple[Indices, Indices, Indices]:

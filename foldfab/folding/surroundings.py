@@ -1,8 +1,8 @@
-"""What a unit sees of the furniture around it: what is near its fold, how far its bases may come down, and a key to both.
+"""What a unit sees of the furniture around it: what is near its fold, how far its bases may come down, and a key.
 
-Everything is in the frame in which the unit stands open; it falls into one cluster for each base of the unit, and each
-cluster only translates while the unit folds (section 5.2). Only what is near takes part: the cost of one look grows with
-the number of solids, and everything else with the number of near ones.
+Everything is in the frame in which the unit stands open; it falls into one cluster for each base of the unit, and
+each cluster only translates while the unit folds (section 5.2). Only what is near takes part: the cost of one look
+grows with the number of solids, and everything else with the number of near ones.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Surroundings:
     """(n,) where they are, in the unit's frame."""
     limits: Limits
     bounds: Mapping[str, tuple[Array, Array]]
-    """By base of the unit, lower and upper corner (3,) of its whole cluster; empty unless the fold must stay in the box."""
+    """By base of the unit, lower and upper corner (3,) of its cluster; empty unless the fold must stay in the box."""
     key: object
     """All that the unit's fold can depend on, hashable: equal keys, equal folds."""
 
@@ -95,7 +95,7 @@ def held_up(problem: Problem, unit: Unit, limits: Limits) -> str:
         assert site.far is not None
         pair = (site.anchor, site.far)
         least = problem.thickness.stack(2, has_upper_base=True)
-        # A base whose parts lie at several heights may reach below the one that carries the chain: that pair has no limit.
+        # A base whose parts lie at several heights may reach below the one that carries the chain: no limit then.
         _, raised, owner = limits.get(pair, (np.inf, np.inf, ""))
         if raised < clear_height(problem, *pair) - least - NEARLY * problem.thickness.panel:
             return owner
@@ -139,14 +139,15 @@ def _brushed(own: Repertoire, low: Array, high: Array, group: Indices, is_other:
         return a[:0]
     least, most = np.min([d.min(0) for d in drags], 0), np.max([d.max(0) for d in drags], 0)
     p, q = near_pairs((low[a], high[a]), (low[b] + least, high[b] + most))
-    return np.unique(np.concatenate([a[p], b[q]]))
+    found: Indices = np.unique(np.concatenate([a[p], b[q]]))
+    return found
 
 
 def _facing(low: Array, high: Array, many: Indices, others: Indices, rise: float) -> Indices:
     """Those of `many` whose bounds, `rise` higher, reach into the bounds of all others together."""
     least, most = low[others].min(0), high[others].max(0)
-    reach = (low[many] <= most).all(1) & (high[many] + [0, 0, rise] >= least).all(1)
-    return many[reach]
+    found: Indices = many[(low[many] <= most).all(1) & (high[many] + [0, 0, rise] >= least).all(1)]
+    return found
 
 
 def _limits(
@@ -155,7 +156,7 @@ def _limits(
 ) -> Limits:  # fmt: skip
     """How far each upper cluster of the unit may come down towards each lower one."""
     gap = problem.thickness.gap
-    found = {(a, b): (np.inf, np.inf, "") for a, b in itertools.combinations(unit.bases, 2)}
+    found = dict.fromkeys(itertools.combinations(unit.bases, 2), (np.inf, np.inf, ""))
     for i, j, p, q in pairs:
         flat, raised, owner = np.inf, np.inf, ""
         for a, b in zip(p, q, strict=True):

@@ -1,8 +1,8 @@
-"""How the units hang together: without its own patches, a unit's furniture falls into one cluster for each of its bases.
+"""How the units hang together: without its own patches, the furniture falls into one cluster for each base of a unit.
 
-Bases and units make a tree (the block tree of the hinge graph), rooted in the furniture's lowest base. The cluster of a
-unit's child base is that base's subtree, and everything else belongs to its parent base; with bases numbered in depth-first
-order a subtree is an interval, so the clusters of any unit take one comparison a base.
+Bases and units make a tree (the block tree of the hinge graph), rooted in the furniture's lowest base. The cluster of
+a unit's child base is that base's subtree, and everything else belongs to its parent base; with bases numbered in
+depth-first order a subtree is an interval, so the clusters of any unit take one comparison a base.
 """
 
 from __future__ import annotations
@@ -44,8 +44,8 @@ def unit_tree(bases: tuple[str, ...], units: tuple[Unit, ...]) -> UnitTree:
     number = {base: i for i, base in enumerate(bases)}
     joined: dict[int, list[Unit]] = {i: [] for i in range(len(bases))}
     for unit in units:
-        for base in unit.bases:
-            joined[number[base]].append(unit)
+        for name in unit.bases:
+            joined[number[name]].append(unit)
     first, last = np.zeros(len(bases), dtype=np.int64), np.zeros(len(bases), dtype=np.int64)
     parent, above = np.full(len(bases), -1), list[Unit | None]([None] * len(bases))
     place, stack, entered = 0, [(0, False)], {0}

@@ -1,4 +1,7 @@
-"""An independent check that a folding solution folds: brute force over time, with its own bookkeeping."""
+"""Problems for the parts of the solver; and an independent check that a folding solution folds.
+
+The check is brute force over time, with its own bookkeeping.
+"""
 
 from __future__ import annotations
 
@@ -10,13 +13,57 @@ import pytest
 
 from foldfab.folding import anatomy
 from foldfab.folding.kinematics import configuration
-from foldfab.folding.model import Chain, FoldSolution
+from foldfab.folding.model import Chain, FoldSolution, Thickness
+from foldfab.folding.ordering import after, greedy
+from foldfab.folding.problem import Problem
+from foldfab.folding.scene import Scene, open_scene
+from foldfab.folding.solve import posed
+from foldfab.folding.unit_fold import UnitFold
 from foldfab.geometry.arrays import Array
 from foldfab.geometry.boxes import Boxes, bounds, grown, moved, overlaps, stacked
+from foldfab.recipe.model import Part
+from foldfab.scaffold.model import Scaffold
 
 SKIN = 0.03
 """Boxes may share this much, mm: the solver's own tolerance, and a little for times between its samples."""
 TIMES = 40
+
+
+@pytest.fixture(scope="session")
+def problem(scaffold: Callable[..., Scaffold]) -> Callable[..., Problem]:
+    """Makes the problem that named furniture or parts pose, with options of the fold."""
+
+    def make(what: object, **options: object) -> Problem:
+        made = scaffold(what, **options)
+        return posed(made, Thickness(made.recipe.print.thickness, made.recipe.print.clearance))
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def folded() -> Callable[..., tuple[Scene, list[tuple[Scene, UnitFold]]]]:
+    """Folds all units greedily: the scene at the end, and each fold with the scene before it."""
+
+    def fold(problem: Problem) -> tuple[Scene, list[tuple[Scene, UnitFold]]]:
+        scene = open_scene(problem)
+        found = greedy(problem, scene, dict.fromkeys((u.name for u in problem.units), 0.0))
+        assert not found.refusals
+        steps = []
+        for step in found.folds:
+            steps.append((scene, step))
+            scene = after(problem, scene, step)
+        return scene, steps
+
+    return fold
+
+
+@pytest.fixture(scope="session")
+def levels(board_at: Callable[..., Part], wall_at: Callable[..., Part]) -> tuple[Part, ...]:
+    """Three boards in one unit: a wall stands in each storey, and one beside them from the lowest to the highest."""
+    return (
+        board_at("low", 0), board_at("middle", 64, 100, x=-40), board_at("high", 128),
+        wall_at("lower", -40, 0, 64), wall_at("upper", -40, 64, 128), wall_at("side", 80, 0, 128),
+    )  # fmt: skip
 
 
 @pytest.fixture(scope="session")

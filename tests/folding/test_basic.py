@@ -127,8 +127,10 @@ def test_from_a_slanted_start_all_panels_but_one_are_equal(scaffold: Make, name:
 
 def test_windows_share_the_width_evenly_and_too_narrow_ones_are_none(scaffold: Make) -> None:
     leg = only_site(scaffold("h_scaffold"))
+    half = THICK.gap / 2
     assert window_span(leg, (0, 4), 4, THICK) == pytest.approx([-30, 30])
-    assert window_span(leg, (1, 2), 4, THICK) == pytest.approx([-15, 0])
+    assert window_span(leg, (0, 2), 4, THICK) == pytest.approx([-30, -half])
+    assert window_span(leg, (1, 2), 4, THICK) == pytest.approx([-15 + half, -half])
     assert window_span(leg, (0, 1), 10, THICK) is None
 
 

@@ -9,11 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from foldfab.folding import choose
 from foldfab.folding.choose import cheapest
 from foldfab.geometry.arrays import Array, Bools
 
 Conflicts = dict[tuple[int, int], Bools]
 Forbidden = frozenset[tuple[tuple[int, int], ...]]
+Instance = tuple[list[Array], Conflicts, Forbidden]
 INF = float("inf")
 
 
@@ -30,7 +32,7 @@ def price(choice: tuple[int, ...], costs: list[Array]) -> float:
 
 
 @st.composite
-def instances(draw: st.DrawFn) -> tuple[list[Array], Conflicts, Forbidden]:
+def instances(draw: st.DrawFn) -> Instance:
     """Up to five patches of up to four options, with few prices so that ties are common."""
     sizes = draw(st.lists(st.integers(1, 4), min_size=1, max_size=5))
     prices = st.sampled_from([0.0, 0.1, 0.25, 0.5, 1.0, INF])
@@ -47,9 +49,36 @@ def instances(draw: st.DrawFn) -> tuple[list[Array], Conflicts, Forbidden]:
 
 
 @given(instances())
-@settings(deadline=None, derandomize=True, max_examples=150)
-def test_no_choice_is_cheaper(instance: tuple[list[Array], Conflicts, Forbidden]) -> None:
-    costs, conflicts, forbidden = instance
+@settings(deadline=None, derandomize=True, max_examples=300)
+def test_no_choice_is_cheaper(instance: Instance) -> None:
+    assert_cheapest(*instance)
+
+
+@pytest.mark.parametrize(("limit", "widest"), [(0, 100), (2, 100), (1500, 0)])
+@given(instance=instances())
+@settings(deadline=None, derandomize=True, max_examples=60)
+def test_nor_is_one_where_the_search_is_handed_over(limit: int, widest: int, instance: Instance) -> None:
+    """At once, after a few branches, or because there are many groups."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(choose, "LIMIT", limit)
+        patch.setattr(choose, "WIDEST", widest)
+        assert_cheapest(*instance)
+
+
+def test_both_ways_to_search_are_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[int] = []
+    monkeypatch.setattr(choose, "proven", lambda alive, *_: asked.append(len(alive)))
+    costs = [np.array([0.0, 1.0]), np.array([0.0, 0.4])]
+    conflicts = {(0, 1): np.array([[True, False], [False, False]])}
+    cheapest(costs, conflicts)
+    assert not asked
+    monkeypatch.setattr(choose, "LIMIT", 0)
+    cheapest(costs, conflicts)
+    assert asked == [2]
+
+
+def assert_cheapest(costs: list[Array], conflicts: Conflicts, forbidden: Forbidden) -> None:
+    """What is found is allowed, and nothing that is allowed costs less."""
     every = itertools.product(*(range(len(c)) for c in costs))
     allowed = [choice for choice in every if is_allowed(choice, costs, conflicts, forbidden)]
     found = cheapest(costs, conflicts, forbidden)
@@ -83,6 +112,17 @@ def test_a_forbidden_combination_leaves_its_parts_allowed() -> None:
     costs = [np.array([0.0, 1.0]), np.array([0.0, 1.0]), np.array([0.0, 3.0])]
     forbidden = frozenset({((0, 0), (1, 0), (2, 0))})
     assert cheapest(costs, {}, forbidden) in {(0, 1, 0), (1, 0, 0)}
+
+
+def test_a_patch_without_neighbours_heeds_what_is_forbidden() -> None:
+    assert cheapest([np.array([0.0, 1.0])], {}, frozenset({((0, 0),)})) == (1,)
+    assert cheapest([np.array([0.0])], {}, frozenset({((0, 0),)})) is None
+
+
+def test_an_option_that_is_forbidden_with_another_leaves_its_place_to_one_like_it() -> None:
+    """The first option is no dearer and excludes no more than the second, but it must not be taken with the other's."""
+    costs = [np.array([0.0, 0.1]), np.array([0.0, 5.0])]
+    assert cheapest(costs, {}, frozenset({((0, 0), (1, 0))})) == (1, 0)
 
 
 def test_patches_that_exclude_each_other_have_no_choice() -> None:

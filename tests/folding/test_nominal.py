@@ -1,0 +1,79 @@
+"""The nominal fold of a unit: higher bases first, and never a base into another."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from foldfab.folding.nominal import FRAMES, nominal
+from foldfab.folding.problem import Problem, clear_height
+from foldfab.recipe.model import Part
+
+Make = Callable[..., Problem]
+STACK = 2 * 4.3 + 0.3
+"""Clear height of a chain with one hinge, folded."""
+
+
+def test_two_bases_come_together_by_all_but_a_stack(problem: Make) -> None:
+    made = problem("h_scaffold")
+    found = nominal(made, made.units[0])
+    assert found.sections == 1 and found.down["ceiling"].shape == (1, FRAMES)
+    assert not found.down["ground"].any()
+    way = found.down["ceiling"][0]
+    assert way[0] == 0.0 and (np.diff(way) < 0).all()
+    assert way[-1] == pytest.approx(STACK - 80.0)
+
+
+def test_the_base_of_t_scaffolds_stands_still(problem: Make) -> None:
+    made = problem("table")
+    for unit in made.units:
+        found = nominal(made, unit)
+        assert found.sections == 1 and all(not way.any() for way in found.down.values())
+
+
+def test_the_highest_base_comes_down_first_and_carries_on_with_the_next(
+    problem: Make, levels: tuple[Part, ...]
+) -> None:
+    """Figure 11 a: one section until the middle board starts, one with both."""
+    made = problem(levels)
+    (unit,) = made.units
+    found = nominal(made, unit)
+    assert unit.bases == ("low", "middle", "high") and found.sections == 2
+    assert not found.down["low"].any()
+    assert not found.down["middle"][0].any() and (np.diff(found.down["high"][0]) < 0).all()
+    assert np.diff(found.down["middle"][1]) == pytest.approx(np.diff(found.down["high"][1]))
+    assert found.down["high"][1, 0] == pytest.approx(found.down["high"][0, -1])
+    clear = {pair: clear_height(made, *pair) for pair in itertools.combinations(unit.bases, 2)}
+    end = {base: way[-1, -1] for base, way in found.down.items()}
+    assert clear["low", "middle"] + end["middle"] == pytest.approx(STACK)
+    assert clear["middle", "high"] + end["high"] - end["middle"] == pytest.approx(STACK)
+
+
+@pytest.mark.parametrize("name", ["h_scaffold", "passage", "shelf", "box_with_table", "tower", "chair"])
+def test_plates_over_one_another_never_meet(problem: Make, name: str) -> None:
+    made = problem(name)
+    for unit in made.units:
+        found = nominal(made, unit)
+        for a, b in itertools.combinations(unit.bases, 2):
+            assert (clear_height(made, a, b) + found.down[b] - found.down[a] >= made.thickness.gap - 1e-9).all()
+
+
+def test_boards_that_no_wall_keeps_apart_stop_above_each_other(
+    problem: Make, board_at: Callable[..., Part], wall_at: Callable[..., Part]
+) -> None:
+    """Two shelves that overlap: the walls that hold each from below and above would let them into each other."""
+    parts = (
+        board_at("low", 0), board_at("left", 44, 60, x=-20), board_at("right", 84, 60, x=20), board_at("top", 128),
+        wall_at("a", -35, 0, 44), wall_at("b", -40, 44, 128), wall_at("c", 35, 0, 84), wall_at("d", 40, 84, 128),
+    )  # fmt: skip
+    made = problem(parts)
+    (unit,) = made.units
+    found = nominal(made, unit)
+    assert unit.bases == ("low", "left", "right", "top")
+    assert clear_height(made, "left", "right") + found.down["right"][-1, -1] - found.down["left"][-1, -1] == (
+        pytest.approx(made.thickness.gap)
+    )
+    assert clear_height(made, "low", "right") + found.down["right"][-1, -1] > STACK

@@ -17,6 +17,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from foldfab.folding import basic
+from foldfab.folding.congruent import repertoire
 from foldfab.folding.graph import Graph
 from foldfab.folding.master import Cut, Master, Order, Proposal
 from foldfab.folding.model import Chain
@@ -26,7 +27,7 @@ from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import Prospects, prospects, unhindered
 from foldfab.folding.realise import Clash, realised
 from foldfab.folding.reasons import reasons_of
-from foldfab.folding.repertoire import Lane, extend, repertoire
+from foldfab.folding.repertoire import Lane, extend
 from foldfab.folding.scene import Scene, shown
 from foldfab.folding.surroundings import Surroundings, depends_on, look
 from foldfab.folding.symmetry import Signature, is_less, signature, unlike

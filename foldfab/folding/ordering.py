@@ -16,8 +16,8 @@ from dataclasses import dataclass, field
 import networkx as nx
 import numpy as np
 
+from foldfab.folding.congruent import repertoire
 from foldfab.folding.problem import Problem
-from foldfab.folding.repertoire import repertoire
 from foldfab.folding.scene import Scene, advanced
 from foldfab.folding.surroundings import Surroundings, depends_on, look
 from foldfab.folding.unit_fold import (

@@ -8,12 +8,12 @@ import numpy as np
 
 from foldfab.errors import FoldingError
 from foldfab.folding import anatomy, basic
+from foldfab.folding.congruent import repertoire
 from foldfab.folding.model import FoldSolution, Modification, Step, Thickness
 from foldfab.folding.optimum import NO_MORE, optimal
 from foldfab.folding.ordering import Ordered, floors, greedy, tight_floors, travel
 from foldfab.folding.problem import Problem
 from foldfab.folding.rehearsal import first_clash
-from foldfab.folding.repertoire import repertoire
 from foldfab.folding.scene import open_scene
 from foldfab.folding.site import sites, slab
 from foldfab.folding.soundness import disconnected, hangs_together, rigid_patches
@@ -66,7 +66,7 @@ def _solved(scaffold: Scaffold, thickness: Thickness) -> FoldSolution:
         met = first_clash(problem, open_scene(problem), ordered.folds)
         if met is None:
             return solution(problem, bound, ordered)
-        problem = replace(problem, banned=problem.banned | {met}, repertoires={}, solved={}, hopeless={})
+        problem = replace(problem, banned=problem.banned | {met}, repertoires={}, poses={}, solved={}, hopeless={})
     told = ", ".join(sorted({patch for patch, _ in problem.banned}))
     raise FoldingError(f"no folding solution found: {told} stay in the way of what folds before; try another thickness")
 

@@ -7,7 +7,6 @@ grows with the number of solids, and everything else with the number of near one
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -104,21 +103,26 @@ def _across(
     problem: Problem, unit: Unit, low: Array, high: Array, group: Indices, is_other: Bools
 ) -> list[tuple[int, int, Indices, Indices]]:
     """For each two clusters (lower, upper), solids of the one below solids of the other that may come down on them."""
-    found = []
-    for i, j in itertools.combinations(range(len(unit.bases)), 2):
-        clear = clear_height(problem, unit.bases[i], unit.bases[j])
-        a, b = np.nonzero(is_other & (group == i))[0], np.nonzero(is_other & (group == j))[0]
-        if not len(a) or not len(b):
-            continue
-        a, b = _facing(low, high, a, b, clear), b
-        b = _facing(low - [0, 0, clear], high, b, a, 0.0) if len(a) else b[:0]
-        if not len(a) or not len(b):
-            continue
-        p, q = near_pairs((low[a], high[a] + [0, 0, clear]), (low[b], high[b]))
-        inside = (low[a[p], :2] < high[b[q], :2]).all(-1) & (low[b[q], :2] < high[a[p], :2]).all(-1)
-        inside &= low[b[q], 2] - high[a[p], 2] > -1e-6
-        found.append((i, j, a[p[inside]], b[q[inside]]))
-    return found
+    faces = [problem.faces[b] for b in unit.bases]
+    clear = np.array([[above.bottom - below.top for above in faces] for below in faces])
+    a = b = np.nonzero(is_other)[0]
+    if len(unit.bases) == 2:
+        a, b = a[group[a] == 0], b[group[b] == 1]
+        a = _facing(low, high, a, b, clear[0, 1])
+        b = _facing(low - [0, 0, clear[0, 1]], high, b, a, 0.0)
+    if not len(a) or not len(b):
+        return []
+    p, q = near_pairs((low[a], high[a] + [0, 0, max(float(clear.max()), 0.0)]), (low[b], high[b]))
+    p, q = a[p], b[q]
+    inside = (low[p, :2] < high[q, :2]).all(-1) & (low[q, :2] < high[p, :2]).all(-1) & (group[p] < group[q])
+    room = low[q, 2] - high[p, 2]
+    inside &= (room > -1e-6) & (room <= clear[group[p], group[q]])
+    p, q = p[inside], q[inside]
+    code = group[p] * len(unit.bases) + group[q]
+    order = np.argsort(code, kind="stable")
+    cuts = np.nonzero(np.diff(code[order]))[0] + 1
+    parts = [part for part in np.split(order, cuts) if len(part)]
+    return [(int(group[p[k[0]]]), int(group[q[k[0]]]), p[k], q[k]) for k in parts]
 
 
 def _brushed(own: Repertoire, low: Array, high: Array, group: Indices, is_other: Bools) -> Indices:
@@ -135,6 +139,8 @@ def _brushed(own: Repertoire, low: Array, high: Array, group: Indices, is_other:
 
 def _facing(low: Array, high: Array, many: Indices, others: Indices, rise: float) -> Indices:
     """Those of `many` whose bounds, `rise` higher, reach into the bounds of all others together."""
+    if not len(others):
+        return many[:0]
     least, most = low[others].min(0), high[others].max(0)
     found: Indices = many[(low[many] <= most).all(1) & (high[many] + [0, 0, rise] >= least).all(1)]
     return found
@@ -146,7 +152,7 @@ def _limits(
     """How far each upper cluster of the unit may come down towards each lower one, and what stands in the way."""
     gap, thick = problem.thickness.gap, problem.thickness
     wanted = {(s.anchor, s.far) for s in held(problem, unit)}
-    found = dict.fromkeys(itertools.combinations(unit.bases, 2), (np.inf, np.inf, ""))
+    found: dict[tuple[str, str], tuple[float, float, str]] = {}
     blockers: set[str] = set()
     for i, j, p, q in pairs:
         pair = (unit.bases[i], unit.bases[j])

@@ -13,6 +13,7 @@ import numpy as np
 
 from foldfab.folding import basic
 from foldfab.folding.basic import Option, Variant
+from foldfab.folding.congruent import repertoire
 from foldfab.folding.graph import Graph
 from foldfab.folding.model import Chain
 from foldfab.folding.press import Motion
@@ -20,7 +21,7 @@ from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import blocked_pieces, prospects, unhindered
 from foldfab.folding.realise import Clash, realised
 from foldfab.folding.reasons import reason_against, reasons_of
-from foldfab.folding.repertoire import Lane, Repertoire, extend, repertoire
+from foldfab.folding.repertoire import Lane, Repertoire, extend
 from foldfab.folding.scene import Scene, alone
 from foldfab.folding.surroundings import Surroundings, look
 from foldfab.folding.units import Unit

@@ -63,7 +63,8 @@ def _guarded(argv: Sequence[str]) -> int:
     except SystemExit as leave:
         return leave.code if isinstance(leave.code, int) else 0
     except FoldfabError as error:
-        return _complain(str(error), error.exit_status)
+        advice = f"\n  it would fold {', or '.join(error.advice)}" if error.advice else ""
+        return _complain(f"{error}{advice}", error.exit_status)
     except KeyboardInterrupt:
         return _complain("interrupted", INTERRUPTED)
     except BrokenPipeError:
@@ -82,7 +83,7 @@ def _print(arguments: argparse.Namespace) -> int:
     from foldfab.report import summary
 
     progress("looking for the cheapest fold")
-    solution = pipeline.foldabilize(recipe)
+    solution = _advised(recipe, progress, lambda: pipeline.foldabilize(recipe))
     progress("building the solids")
     assembly = pipeline.fabricate(solution, progress=progress)
     fatal = [finding.text for finding in assembly.findings if finding.is_fatal]
@@ -108,10 +109,12 @@ def _fold(arguments: argparse.Namespace) -> int:
     count = arguments.alternatives
     start = time.perf_counter()
     try:
-        solutions = pipeline.alternatives(recipe, count) if count else (pipeline.foldabilize(recipe),)
+        solutions = _advised(
+            recipe, progress, lambda: pipeline.alternatives(recipe, count) if count else (pipeline.foldabilize(recipe),)
+        )
     except FoldfabError as error:
         if arguments.json and error.exit_status == 1:
-            _print_json(report.refused_facts(str(error)))
+            _print_json(report.refused_facts(str(error), error.advice))
             return 1
         raise
     milliseconds = 1000 * (time.perf_counter() - start)
@@ -130,6 +133,22 @@ def _fold(arguments: argparse.Namespace) -> int:
         )
         print("\n\n".join([told, *map(report.judgement, verdicts)]))
     return 1 if any(verdict.violations for verdict in verdicts) else 0
+
+
+def _advised(recipe: Recipe, progress: _Progress, solve: Callable[[], Any]) -> Any:
+    """What `solve` gives; where it refuses, its error with what would help."""
+    from foldfab.errors import FoldfabError
+
+    try:
+        return solve()
+    except FoldfabError as error:
+        if error.exit_status == 1:
+            progress("looking for what would help")
+            from foldfab.advice import what_would_help
+
+            error.advice = what_would_help(recipe)
+            progress.done()
+        raise
 
 
 def _check(arguments: argparse.Namespace) -> int:

@@ -18,6 +18,8 @@ class FoldfabError(Exception):
     """Base of all errors that foldfab raises on purpose."""
 
     exit_status = 1
+    advice: tuple[str, ...] = ()
+    """Single changes that would help, where they were looked for."""
 
 
 @dataclass(frozen=True, slots=True)

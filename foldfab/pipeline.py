@@ -104,12 +104,11 @@ def alternatives(recipe: Recipe, count: int) -> tuple[FoldSolution, ...]:
     Raises:
         AbstractionError, FoldingError: as for `foldabilize`.
     """
-    from foldfab.folding.solve import alternatives as ranked  # type: ignore[attr-defined,unused-ignore]
+    from foldfab.folding.alternatives import alternatives as ranked
 
     best = foldabilize(recipe).scaffold
     # Not `best` itself, which may be disconnected where parts must not be split.
-    found: tuple[FoldSolution, ...] = ranked(_abstracted(recipe, best.direction, best.scale), count)
-    return found
+    return ranked(_abstracted(recipe, best.direction, best.scale), count)
 
 
 def verify(solution: FoldSolution) -> tuple[Violation, ...]:

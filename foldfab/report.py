@@ -91,9 +91,9 @@ def alternatives_facts(solutions: Sequence[FoldSolution], milliseconds: float) -
     return {"status": "folded", "alternatives": [fold_facts(solution, milliseconds) for solution in solutions]}
 
 
-def refused_facts(reason: str) -> dict[str, Any]:
-    """The JSON data of furniture that cannot be folded."""
-    return {"status": "refused", "reason": reason}
+def refused_facts(reason: str, advice: Sequence[str] = ()) -> dict[str, Any]:
+    """The JSON data of furniture that cannot be folded, and of what would help."""
+    return {"status": "refused", "reason": reason, "advice": list(advice)}
 
 
 def is_proven(solution: FoldSolution) -> bool:

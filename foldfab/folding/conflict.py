@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from foldfab.folding.problem import Problem
-from foldfab.folding.repertoire import Lane, Repertoire, cuts_of, lane, resting, swept
+from foldfab.folding.repertoire import Lane, Repertoire, cuts_of, lane, regions, resting, swept
 from foldfab.folding.space import Batch, conflicts
 from foldfab.geometry.arrays import Array, Bools
 
@@ -35,7 +35,11 @@ def compare(problem: Problem, own: Repertoire, many: Iterable[Lane]) -> None:
     fresh += [y for y in plain.values() if y is not None and y not in fresh and y.number not in own.compared]
     known = [own.lanes[n] for n in sorted(own.compared)]
     same, once = _never_compared(own, fresh)
+    own.compared.update(x.number for x in fresh)
     cuts = cuts_of(own)
+    if problem.options.collisions == "regions":
+        _learn(own, _regions_met(problem, own, fresh, known, cuts, same, once))
+        known, fresh = [], []
     for section in range(own.nominal.sections):
         moving = swept(problem, own, fresh, section)
         others = swept(problem, own, known, section)
@@ -46,9 +50,20 @@ def compare(problem: Problem, own: Repertoire, many: Iterable[Lane]) -> None:
         for a, b, apart in pairs:
             if a is not None and b is not None:
                 _learn(own, conflicts(a, b, cuts, apart))
-    own.compared.update(x.number for x in fresh)
     for number, y in plain.items():
         own.plain_of[number] = y.number if y is not None else number
+
+
+def _regions_met(
+    problem: Problem, own: Repertoire, fresh: list[Lane], known: list[Lane], cuts: Array, same: Bools, once: Bools
+) -> dict[tuple[int, int], Bools]:
+    """The paper's own test: folding time intervals overlap, and so do the regions that the patches cover when folded."""
+    start = np.array([x.active.start for x in own.lanes])
+    stop = np.array([x.active.stop for x in own.lanes])
+    apart = (start[:, None] >= stop) | (start >= stop[:, None])
+    new = regions(problem, own, fresh)
+    met = conflicts(new, new, cuts, once | apart)
+    return met | conflicts(new, regions(problem, own, known), cuts, same | apart) if known else met
 
 
 def windows_table(windows: tuple[tuple[int, int], ...], steps: int) -> Array:

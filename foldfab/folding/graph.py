@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
+from foldfab.folding.basic import Option
 from foldfab.folding.choose import Combination, cheapest
 from foldfab.folding.conflict import compare, neighbours, table, windows_table
 from foldfab.folding.options import options_of
@@ -13,6 +14,7 @@ from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import Prospects
 from foldfab.folding.realise import Clash
 from foldfab.folding.repertoire import Lane, Repertoire
+from foldfab.folding.symmetry import bound, signature, unlike
 from foldfab.geometry.arrays import Array, Bools
 
 Lesson = tuple[Clash, tuple[tuple[Lane, tuple[int, int]] | None, ...]]
@@ -23,7 +25,13 @@ class Graph:
     """The conflict graph of a unit in some surroundings, with what simulations have added to it."""
 
     def __init__(
-        self, problem: Problem, own: Repertoire, found: Prospects, offset: Array, learned: Iterable[Lesson] = ()
+        self,
+        problem: Problem,
+        own: Repertoire,
+        found: Prospects,
+        offset: Array,
+        learned: Iterable[Lesson] = (),
+        chosen: Mapping[str, Option] | None = None,
     ) -> None:
         self.patches = own.unit.patches
         options = options_of(problem, found, offset)
@@ -37,10 +45,24 @@ class Graph:
             made = table(problem, own, found.lanes[a], found.lanes[b], inside)
             if made is not None:
                 self.tables[place[a], place[b]] = made
+        self._treat_alike(problem, chosen or {})
         self.forbidden: set[Combination] = set()
         self.learned: list[Lesson] = []
         for clash, places in learned:
             self.learn(tuple(o.index(place) for o, place in zip(self.options, places, strict=True)), clash)
+
+    def _treat_alike(self, problem: Problem, chosen: Mapping[str, Option]) -> None:
+        """Rules out what differs between a patch and its mirror image, in this unit or in one that is folded."""
+        place = {p: g for g, p in enumerate(self.patches)}
+        for g, patch in enumerate(self.patches):
+            asked, twin = bound(problem, chosen, patch), problem.twins.get(patch)
+            if asked is not None:
+                options = self.options[g]
+                self.costs[g][[signature(options[i]) != asked for i in range(len(options.price))]] = np.inf
+            elif twin is not None and place.get(twin.patch, -1) > g:
+                h, steps = place[twin.patch], problem.options.shrink_steps
+                apart = unlike(self.options[g], self.options[h], steps, is_reversed=twin.is_reversed)
+                self.tables[g, h] = self.tables[g, h] | apart if (g, h) in self.tables else apart
 
     def cheapest(self) -> tuple[int, ...] | None:
         """The cheapest choice, one option a patch."""

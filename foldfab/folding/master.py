@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from foldfab.folding.options import Options
-from foldfab.geometry.arrays import Bools
+from foldfab.geometry.arrays import Array, Bools
 
 if TYPE_CHECKING:
     from ortools.sat.python import cp_model
@@ -85,6 +85,19 @@ class Master:
         terms = [sum(self.on[p, i] for i in many if (p, i) in self.on) for p, many in cut.options]
         terms += [self._is_before(*pair) for pair in cut.order]
         self.model.add(sum(terms) <= len(terms) - 1)
+
+    def treat_alike(self, p: str, q: str, apart: Bools) -> None:
+        """Demands options of two patches that are not apart (n, m)."""
+        self._exclude(p, q, apart)
+
+    def at_least(self, terms: Mapping[str, Array], least: float) -> None:
+        """Demands that the weights (n,) of the options of some patches add up to no less."""
+        every = [
+            round(float(weight[i]) * UNITS_PER_COST) * self.on[p, i]
+            for p, weight in terms.items()
+            for i in self.worth[p]
+        ]
+        self.model.add(sum(every) >= int(np.floor(least * UNITS_PER_COST)) - len(every))
 
     def solved(self, work: float, hint: Proposal | None) -> tuple[Proposal | None, float, float]:
         """The best proposal, the lower bound, and the work that it took; no proposal where there is none within the work."""

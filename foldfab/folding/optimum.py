@@ -29,6 +29,7 @@ from foldfab.folding.reasons import reasons_of
 from foldfab.folding.repertoire import Lane, extend, repertoire
 from foldfab.folding.scene import Scene, shown
 from foldfab.folding.surroundings import Surroundings, depends_on, held_up, look
+from foldfab.folding.symmetry import Signature, is_less, signature, unlike
 from foldfab.folding.tree import between
 from foldfab.folding.unit_fold import UnitFold
 from foldfab.folding.units import Unit
@@ -64,11 +65,13 @@ class _Group:
     units: tuple[Unit, ...]
     known: float
     """What the best fold known counts."""
-    floor: float
-    """What its units count at least."""
+    floor: Mapping[str, float]
+    """By unit, what it counts at least."""
     lanes: dict[str, tuple[Lane, ...]]
     """By patch; those on plinths are added as they are asked for."""
     lessons: list[_Lesson] = field(default_factory=list)
+    excluded: tuple[Mapping[str, Signature], ...] = ()
+    """Modifications of all patches that are not asked for again, nor with less left of them."""
 
 
 def optimal(
@@ -97,7 +100,7 @@ def optimal(
             bound += least
             continue
         others = [folds[n] for n in order if n not in names] if is_whole else []
-        found, group_bound = _solved(_group(problem, scene, others, names, best, least), work)
+        found, group_bound = _solved(_group(problem, scene, others, {n: floor[n] for n in names}, best), work)
         bound += min(group_bound, best)
         if found is not None:
             rest = [n for n in order if n not in names] if is_whole else []
@@ -108,21 +111,30 @@ def optimal(
     return Ordered(tuple(folds[n] for n in order), ()), bound
 
 
+def other(
+    problem: Problem, scene: Scene, floor: Mapping[str, float], excluded: tuple[Mapping[str, Signature], ...],
+    most: float, work: float,
+) -> tuple[Ordered | None, float]:  # fmt: skip
+    """The best order with other modifications than those excluded that counts less than `most`, and its bound."""
+    group = replace(_group(problem, scene, [], dict(floor), most), excluded=excluded)
+    folds, bound = _solved(group, work)
+    return (Ordered(folds, ()) if folds is not None else None), bound
+
+
 def _weight(known: Ordered) -> float:
     return sum(f.weight for f in known.folds)
 
 
-def _group(
-    problem: Problem, scene: Scene, others: list[UnitFold], names: set[str], known: float, floor: float
-) -> _Group:
+def _group(problem: Problem, scene: Scene, others: list[UnitFold], floor: dict[str, float], known: float) -> _Group:
+    spare = known - sum(floor.values())
     for fold in others:
         scene = after(problem, scene, fold)
-    units = tuple(u for u in problem.units if u.name in names)
+    units = tuple(u for u in problem.units if u.name in floor)
     for unit in units:
         own = repertoire(problem, unit)
         for patch in unit.patches:
             first = own.plain[patch][0].variant if own.plain[patch] else None
-            while own.later[patch] and _surcharge(problem, patch, first, own.later[patch][0]) < known - floor:
+            while own.later[patch] and _surcharge(problem, patch, first, own.later[patch][0]) < spare:
                 extend(problem, own, patch)
     lanes = {p: repertoire(problem, u).plain[p] for u in units for p in u.patches}
     return _Group(problem, scene, units, known, floor, lanes)
@@ -141,7 +153,7 @@ def _solved(group: _Group, work: float) -> tuple[tuple[UnitFold, ...] | None, fl
 
     No folds where none is cheaper than what is known, or none was found within the work.
     """
-    bound, hint = group.floor, None
+    bound, hint = sum(group.floor.values()), None
     while work > 0:
         options, master = _posed(group)
         work -= BUILDING
@@ -186,6 +198,20 @@ def _posed(group: _Group) -> tuple[dict[str, Options], Master]:
     worth = {p: np.nonzero(o.weight - o.weight.min() <= spare)[0].tolist() for p, o in options.items()}
     worth = {p: keep if np.isfinite(spare) else _finite(options[p]) for p, keep in worth.items()}
     master = Master({u.name: u.patches for u in group.units}, options, tables, worth)
+    for patch, twin in sorted(problem.twins.items()):
+        if patch < twin.patch and patch in options and twin.patch in options:
+            master.treat_alike(
+                patch,
+                twin.patch,
+                unlike(options[patch], options[twin.patch], problem.options.shrink_steps, is_reversed=twin.is_reversed),
+            )
+    for unit in group.units:
+        master.at_least({p: options[p].weight for p in unit.patches}, group.floor[unit.name])
+    for one in group.excluded:
+        alike = (
+            (p, tuple(i for i in range(len(o.price)) if is_less(signature(o[i]), one[p]))) for p, o in options.items()
+        )
+        master.add(Cut(tuple(alike), ()))
     for lesson in group.lessons:
         master.add(_cut(options, lesson))
     return options, master
@@ -263,14 +289,70 @@ def _unit_played(
     result = realised(problem, scene, unit, around, chosen)
     found = prospects(problem, own, around, in_place=False)
     if not isinstance(result, Clash):
-        reasons = reasons_of(problem, found, chosen)
+        reasons = reasons_of(problem, own, found, chosen)
         cost = sum(o.cost for o in chosen.values())
         weight = sum(float(options[p].weight[proposal.chosen[p]]) for p in unit.patches)
         return UnitFold(unit, chosen, reasons, *result, around.cluster, cost, weight)
     for patch, lanes in found.lanes.items():
         group.lanes[patch] += tuple(x for x in lanes if x not in group.lanes[patch])
     group.lessons += _lessons(group, scene, unit, around, options, proposal, done, result)
+    group.lessons += _lessons_of_others(group, scene, unit, around, options, proposal, done, found)
     return None
+
+
+def _lessons_of_others(
+    group: _Group, scene: Scene, unit: Unit, around: Surroundings, options: Mapping[str, Options],
+    proposal: Proposal, done: set[str], found: Prospects,
+) -> list[_Lesson]:  # fmt: skip
+    """What the same surroundings would do to the lanes that were not chosen."""
+    problem, lessons = group.problem, []
+    for x in (x for many in found.lanes.values() for x in many if found.blocked[x.number].any() and not x.is_out):
+        met = found.obstacles[x.number]
+        strangers = [o for o in met if o in problem.unit_of and o in options]
+        windows = {w for w in options[x.patch].windows if found.blocked[x.number][w[0] : w[1]].any()}
+        held = [(x.patch, frozenset((x.number, w) for w in windows))]
+        slabs = _slabs(problem, around, found.met[x.number], done)
+        held += [(q, _as_wide(options[q], proposal.chosen[q], any_lane=q in slabs)) for q in strangers]
+        deciding = {problem.unit_of[q].name for q in strangers}.union(
+            *(_on_the_way(scene, unit, around, o) for o in met)
+        )
+        lessons.append(_Lesson(tuple(held), _as_it_is(group, unit, deciding, done)))
+    return lessons
+
+
+def _slabs(problem: Problem, around: Surroundings, met: set[int], done: set[str]) -> set[str]:
+    """The unfolded patches of which nothing but panels is met: those stand there whichever way the patch folds."""
+    slabs, others = set[str](), set[str]()
+    starts = np.searchsorted(around.owner, np.arange(len(around.solids)))
+    for box in met - {-1}:
+        solid = int(around.owner[box])
+        owner = around.solids[solid].owner
+        is_panel = around.solids[solid].state == "open" and box - starts[solid] <= _inserted(problem, around, solid)
+        (slabs if is_panel and problem.unit_of[owner].name not in done else others).add(owner)
+    return slabs - others
+
+
+def _inserted(problem: Problem, around: Surroundings, solid: int) -> int:
+    """How many hinges are inserted in the open chain that a solid shows: its panels come first, then knuckles, then a foot."""
+    site = problem.sites[around.solids[solid].owner]
+    base = problem.tree.number[site.anchor]
+    return (len(around.solids[solid].boxes) - 2) // 2 if around.solids[solid].base == base else -1
+
+
+def _as_wide(options: Options, index: int, *, any_lane: bool) -> frozenset[Place]:
+    """The options of the same lane, or of any, with windows that hold the one of an option."""
+    own = options.place(index)
+    if own is None or not any_lane:
+        return _alike(options, index, "wider windows")
+    low, high = own[1]
+    wide = [w for w in options.windows if w[0] <= low and w[1] >= high]
+    return frozenset((x.number, w) for x in options.lanes for w in wide)
+
+
+def _as_it_is(group: _Group, unit: Unit, deciding: set[str], done: set[str]) -> tuple[Order, ...]:
+    """The order of the deciding units around this one, as it is now."""
+    names = {u.name for u in group.units} & deciding - {unit.name}
+    return tuple((n, unit.name) if n in done else (unit.name, n) for n in sorted(names))
 
 
 def _lessons(
@@ -279,7 +361,6 @@ def _lessons(
 ) -> list[_Lesson]:  # fmt: skip
     """What a clash forbids: the options that meet, as long as the units that decide it fold in this order."""
     problem, found = group.problem, []
-    names = {u.name for u in group.units}
     lies_low = any(np.isfinite(flat) for flat, _, _ in around.limits.values())
     for k, patches in enumerate(clash.patches):
         held = [(p, _alike(options[p], proposal.chosen[p], clash.holds_for)) for p in patches]
@@ -293,11 +374,10 @@ def _lessons(
             deciding |= depends_on(problem, unit, around)
             low = {s.owner for s in around.solids if s.state == "folded"} & set(options)
             held += [(q, _alike(options[q], proposal.chosen[q], "any window")) for q in sorted(low - set(strangers))]
-        if "cut the furniture" in clash.reason:
+        if clash.cuts:
             held += [(q, frozenset([None])) for q in sorted(scene.gone & set(options))]
             deciding = set()
-        order = tuple((n, unit.name) if n in done else (unit.name, n) for n in sorted(deciding & names - {unit.name}))
-        found.append(_Lesson(tuple(held), order))
+        found.append(_Lesson(tuple(held), _as_it_is(group, unit, deciding, done)))
     return found
 
 

@@ -103,7 +103,7 @@ def greedy(problem: Problem, scene: Scene, floor: Mapping[str, Choice]) -> Order
 def after(problem: Problem, scene: Scene, fold: UnitFold) -> Scene:
     """The scene once the unit lies folded; the furniture's lowest base stays where it is."""
     ends = np.array([fold.motion.shift[b][-1] for b in fold.unit.bases])[fold.cluster]
-    return advanced(scene, fold.unit, fold.chains, ends - ends[0])
+    return advanced(scene, fold.unit, fold.chosen, fold.chains, ends - ends[0])
 
 
 def travel(problem: Problem, fold: UnitFold) -> dict[str, Array]:

@@ -42,6 +42,8 @@ class Problem:
     """(n,) the open furniture with thickness."""
     outline: tuple[Array, Array]
     """Lower and upper corner (3,) of the open furniture, mm."""
+    twins: Mapping[str, Any] = field(default_factory=dict)
+    """By patch that has one, its mirror image (`symmetry`), where the recipe asks for it."""
     banned: frozenset[tuple[str, Variant]] = frozenset()
     """Variants, without plinths, that a rehearsal of the whole fold has shown to be in the way."""
     repertoires: dict[Unit, Any] = field(default_factory=dict)

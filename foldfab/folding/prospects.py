@@ -39,6 +39,8 @@ class Prospects:
     blocked: Room
     obstacles: Mapping[int, tuple[str, ...]]
     """By lane, the owners of what it meets."""
+    met: Mapping[int, set[int]]
+    """By lane, the boxes around the unit that it meets; -1 for the bounds that it must keep to."""
 
 
 def prospects(problem: Problem, own: Repertoire, around: Surroundings, *, in_place: bool) -> Prospects:
@@ -54,7 +56,7 @@ def prospects(problem: Problem, own: Repertoire, around: Surroundings, *, in_pla
         lanes[patch] = (*many, *raised)
     _raise_partners(problem, own, around, lanes, room, met)
     owners = {n: tuple(sorted({_owner(around, i) for i in found})) for n, found in met.items()}
-    return Prospects(lanes, room, owners)
+    return Prospects(lanes, room, owners, met)
 
 
 def blocked_pieces(problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane]) -> Room:
@@ -68,7 +70,7 @@ def unhindered(problem: Problem, own: Repertoire) -> Prospects:
     """What the patches of a unit could do if nothing stood around it."""
     steps = problem.options.shrink_steps
     blocked = {x.number: np.full(steps, x.is_out) for many in own.plain.values() for x in many}
-    return Prospects(own.plain, blocked, {})
+    return Prospects(own.plain, blocked, {}, {})
 
 
 def _owner(around: Surroundings, box: int) -> str:

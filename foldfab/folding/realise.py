@@ -36,6 +36,8 @@ class Clash:
     """Which other options it rules out: where parts meet, wider windows of the same patches meet as well."""
     met: tuple[tuple[str, str], ...] = ()
     """For each of the sets, the two owners that meet; empty where nothing does."""
+    cuts: bool = False
+    """Whether it is about deletions that would leave the furniture in more than one piece."""
 
 
 def realised(
@@ -44,7 +46,7 @@ def realised(
     """The chains and the motion of a choice, or what is wrong with it."""
     if not _stays_connected(problem, scene, unit, chosen):
         gone = tuple(p for p in chosen if chosen[p].variant is None)
-        return Clash((gone,), "deleting it would cut the furniture in two")
+        return Clash((gone,), f"without {', '.join(gone)} the furniture would fall apart", cuts=True)
     result: tuple[tuple[Chain, ...], Motion] | Clash = Clash((tuple(chosen),), "")
     for by_thickness in (True, False):
         made = _balanced(problem, unit, around, chosen, by_thickness=by_thickness)
@@ -71,16 +73,17 @@ def _played(
             beside = _most_unlike(chain, chains, way)
             blamed = (chain.patch, beside) if beside else tuple(chosen)
             return Clash((blamed,), f"{chain.patch} cannot follow {beside or 'its unit'}", holds_for="any window")
-    met = list(clashes(unit, problem.tree.number, chains, motion, around, problem.thickness))
+    met = clashes(unit, problem.tree.number, chains, motion, around, problem.thickness)
     if met:
+        (first, second), time = next(iter(met.items()))
+        reason = f"{first} meets {second} when {100 * time:.0f} % of that fold are done"
         carried = [pair for pair in met if not set(pair) & set(chosen)]
         if carried and is_slanted:
             # What hangs on a base is dragged along with it, whatever is left of the patches that drag it.
             dragging = tuple((c.patch,) for c in chains if c.far is not None)
-            reason = f"{carried[0][0]} is carried into {carried[0][1]}"
             return Clash(dragging, reason, "any window", (carried[0],) * len(dragging))
         mine = tuple(tuple(p for p in pair if p in chosen) or tuple(chosen) for pair in met)
-        return Clash(mine, f"{met[0][0]} meets {met[0][1]}", "wider windows", tuple(met))
+        return Clash(mine, reason, "wider windows", tuple(met))
     return chains, motion
 
 

@@ -1,32 +1,92 @@
-"""Why a patch has to be changed, in a few words."""
+"""Why a patch has to be changed, and why a unit cannot fold, in a few words."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
+import numpy as np
+
 from foldfab.folding.basic import Option
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import Prospects
+from foldfab.folding.repertoire import Lane, Repertoire
+
+NAMED = 3
+"""How many things a reason names."""
 
 
-def reasons_of(problem: Problem, found: Prospects, chosen: Mapping[str, Option]) -> dict[str, str]:
-    """Why each changed patch had to be changed: what its whole, unsplit self would meet."""
+def reasons_of(problem: Problem, own: Repertoire, found: Prospects, chosen: Mapping[str, Option]) -> dict[str, str]:
+    """Why each changed patch had to be changed, one clause that follows what was done to it."""
+    lanes = {p: _lane(found, p, o) for p, o in chosen.items()}
     reasons = {}
     for patch, option in chosen.items():
         if option.variant is not None and option.cost == 0.0:
             continue
-        obstacles = {
-            name
-            for x in found.lanes[patch]
-            if option.variant is None
-            or (x.variant.hinges, x.variant.side) == (option.variant.hinges, option.variant.side)
-            for name in found.obstacles[x.number]
-        }
-        if obstacles:
-            reasons[patch] = "because of " + ", ".join(sorted(obstacles)[:3])
-        elif option.variant is None or option.window != (0, problem.options.shrink_steps):
-            others = sorted(p for p in chosen if p != patch and chosen[p].variant is not None)
-            reasons[patch] = "to let " + ", ".join(others[:3]) + " fold through it" if others else ""
-        else:
-            reasons[patch] = "to come straight down"
+        told = []
+        if option.variant is None or option.window != (0, problem.options.shrink_steps):
+            told.append(_narrowed(own, found, lanes, patch, option))
+        if option.variant is not None and option.variant.hinges:
+            told.append(_split(own, found, lanes, patch, option))
+        reasons[patch] = "; ".join(dict.fromkeys(text for text in told if text))
     return reasons
+
+
+def reason_against(problem: Problem, own: Repertoire, found: Prospects, why: list[str]) -> str:
+    """Why a unit cannot fold, from what its surroundings leave and what its simulations have shown."""
+    told = []
+    for patch in own.unit.patches:
+        many = found.lanes[patch]
+        if not many:
+            told.append(f"{patch} is too short or too steep for hinges at this scale, print larger or thinner")
+        elif all(found.blocked[x.number].all() for x in many):
+            met = sorted({name for x in many for name in found.obstacles[x.number]})
+            told.append(
+                f"{patch} has no room: whichever way it folds it meets {', '.join(met[:NAMED]) or 'its own unit'}"
+            )
+    told = told[:NAMED] or [text for text in why if "fall apart" not in text][:NAMED]
+    return "; ".join(told or why[:1] or ["whatever its parts do, two of them meet"])
+
+
+def _lane(found: Prospects, patch: str, option: Option) -> Lane | None:
+    return next((x for x in found.lanes[patch] if x.variant == option.variant), None)
+
+
+def _narrowed(own: Repertoire, found: Prospects, lanes: Mapping[str, Lane | None], patch: str, option: Option) -> str:
+    """What the part of the patch that is gone would meet."""
+    lane = lanes[patch]
+    if lane is None:
+        met = {name for x in found.lanes[patch] for name in found.obstacles[x.number]}
+        met |= {q for x in found.lanes[patch] for q in _conflicting(own, x, lanes, range(len(x.cuts) - 1))}
+        return _because(met, "it would meet")
+    gone = [s for s in range(len(lane.cuts) - 1) if not option.window[0] <= s < option.window[1]]
+    folding = _conflicting(own, lane, lanes, gone)
+    if folding:
+        return _because(folding, "it would fold through")
+    if found.blocked[lane.number][gone].any():
+        return _because(set(found.obstacles[lane.number]), "it would meet")
+    return "because there is no room for all of it"
+
+
+def _split(own: Repertoire, found: Prospects, lanes: Mapping[str, Lane | None], patch: str, option: Option) -> str:
+    """What it would meet in one piece, or with fewer hinges."""
+    assert option.variant is not None
+    fewer = [x for x in found.lanes[patch] if x.variant.hinges < option.variant.hinges]
+    met = {name for x in fewer if found.blocked[x.number].any() for name in found.obstacles[x.number]}
+    met |= {q for x in fewer for q in _conflicting(own, x, lanes, range(len(x.cuts) - 1))} - {patch}
+    return _because(met, "with fewer hinges it would meet") if met else "to come straight down"
+
+
+def _conflicting(own: Repertoire, lane: Lane, lanes: Mapping[str, Lane | None], pieces: range | list[int]) -> set[str]:
+    """The patches whose lanes meet some pieces of a lane."""
+    found = set()
+    for patch, other in lanes.items():
+        if other is None or patch == lane.patch:
+            continue
+        table = own.pieces.get((min(lane.number, other.number), max(lane.number, other.number)))
+        if table is not None and np.asarray(table if lane.number < other.number else table.T)[list(pieces)].any():
+            found.add(patch)
+    return found
+
+
+def _because(met: set[str], how: str) -> str:
+    return f"because {how} {', '.join(sorted(met)[:NAMED])}" if met else ""

@@ -31,6 +31,8 @@ ROOM_THICKNESSES = 2.0
 
 TOUCH = 1e-3
 """Parts exactly the gap apart do not meet: the grid that sizes stand on, mm."""
+TALL = 1e6
+"""Half the height of a folding region, mm: what lies above or below it counts."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -141,6 +143,21 @@ def resting(problem: Problem, own: Repertoire, many: Iterable[Lane], section: in
             shift = upright(own.nominal.down[x.chain.anchor][section] - was)
             parts.append((moved(still(at, FRAMES), shift[:, None]), x.number))
     return joined(parts, problem.thickness.gap / 2 - TOUCH) if parts else None
+
+
+def regions(problem: Problem, own: Repertoire, many: Iterable[Lane]) -> Batch:
+    """The folding regions of lanes (section 5.4): what their panels cover when folded, at whatever height."""
+    parts = []
+    for x in many:
+        last = own.movers[x.number][x.active.stop - 1][-1][: len(x.chain.lengths)]
+        # The panels lie flat: their second axis is the hinge direction, their third one the length.
+        half = last.half.copy()
+        axes = last.axes.copy()
+        axes[:, 0] = [0.0, 0.0, 1.0]
+        axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])
+        half[:, 0] = TALL
+        parts.append((still(Boxes(last.center, axes, half), 1), x.number))
+    return joined(parts, -TOUCH)
 
 
 def awkwardness(problem: Problem, many: tuple[Lane, ...], offset: Array) -> Array:

@@ -13,6 +13,7 @@ from typing import Literal
 import numpy as np
 
 from foldfab.folding import anatomy
+from foldfab.folding.basic import Option
 from foldfab.folding.model import Chain
 from foldfab.folding.problem import Problem
 from foldfab.folding.site import slab
@@ -53,6 +54,8 @@ class Scene:
     """Plates first, then the patches' solids."""
     places: Mapping[str, tuple[int, ...]]
     """By patch, where its solids are in `solids`."""
+    chosen: Mapping[str, Option]
+    """What was chosen for the patches of folded units."""
     chains: Mapping[str, Chain]
     """The chains of folded units, by patch; a patch of a folded unit that is not here is deleted."""
     done: frozenset[str]
@@ -90,15 +93,18 @@ def open_scene(problem: Problem) -> Scene:
     low, high = np.array([s.low for s in solids]), np.array([s.high for s in solids])
     base = np.array([s.base for s in solids])
     still = np.zeros((len(number), 3))
-    return Scene(problem, still, tuple(solids), places, {}, frozenset(), frozenset(), low, high, base)
+    return Scene(problem, still, tuple(solids), places, {}, {}, frozenset(), frozenset(), low, high, base)
 
 
-def advanced(scene: Scene, unit: Unit, chains: Iterable[Chain], travel: Array) -> Scene:
-    """The scene after the unit has folded by the chains; `travel` (b, 3) is each base's translation, mm."""
+def advanced(scene: Scene, unit: Unit, chosen: Mapping[str, Option], chains: Iterable[Chain], travel: Array) -> Scene:
+    """The scene after the unit has folded as chosen, by the chains; `travel` (b, 3) is each base's translation, mm."""
     now = shown(scene, unit, chains, is_folded=True)
     held = {**scene.chains, **{c.patch: c for c in chains}}
     gone = scene.gone | {p for p in unit.patches if p not in held}
-    return replace(now, offset=scene.offset + travel, chains=held, done=scene.done | {unit.name}, gone=gone)
+    chosen = {**scene.chosen, **chosen}
+    return replace(
+        now, offset=scene.offset + travel, chosen=chosen, chains=held, done=scene.done | {unit.name}, gone=gone
+    )
 
 
 def shown(scene: Scene, unit: Unit, chains: Iterable[Chain], *, is_folded: bool) -> Scene:

@@ -7,6 +7,7 @@ in scenes of a few frames, so that a chain that stands still in one takes part a
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Mapping
 
 import numpy as np
@@ -31,24 +32,30 @@ SCENE = 40
 def clashes(
     unit: Unit, number: Mapping[str, int], chains: tuple[Chain, ...], motion: Motion, around: Surroundings,
     thickness: Thickness,
-) -> Iterator[tuple[str, str]]:  # fmt: skip
-    """Pairs of owners that meet: patch and patch, patch and something around, or two bases' clusters.
+) -> dict[tuple[str, str], float]:  # fmt: skip
+    """By two owners that meet, when they first do, in the unit's own time from 0 to 1, earliest first.
 
-    `number` gives the number of every base.
+    They are patch and patch, patch and something around, or what hangs on two bases. `number` gives the number of every
+    base.
     """
     picked = np.unique(np.append(np.arange(0, len(motion.samples), STRIDE), len(motion.samples) - 1))
     own_plates = _own_plates(number, chains, around)
-    met: set[tuple[str, str]] = set()
+    met: dict[tuple[str, str], float] = {}
     for start in range(0, max(len(picked) - 1, 1), SCENE):
         frames = picked[start : start + SCENE + 1]
         moving, resting = _played(chains, motion, frames, thickness)
         shifts = np.stack([motion.shift[base][frames] for base in unit.bases], axis=1)
         still = carried(grown(around.boxes, -SKIN), shifts[:, around.group], np.arange(len(around.boxes)))
-        met |= set(_between_chains(chains, moving, resting))
-        for many in (moving, resting):
-            met |= set(_with_surroundings(chains, many, still, around, own_plates))
-        met |= set(_between_clusters(still, around))
-    yield from sorted(met)
+        found = itertools.chain(
+            _between_chains(chains, moving, resting),
+            _with_surroundings(chains, moving, still, around, own_plates),
+            _with_surroundings(chains, resting, still, around, own_plates),
+            _between_clusters(still, around),
+        )
+        for a, b, frame in found:
+            time = float(motion.samples[frames[frame]])
+            met[a, b] = min(met.get((a, b), 1.0), time)
+    return dict(sorted(met.items(), key=lambda item: (item[1], item[0])))
 
 
 def _played(
@@ -79,34 +86,43 @@ def _played(
 
 def _between_chains(
     chains: tuple[Chain, ...], moving: Batch | None, resting: Batch | None
-) -> Iterator[tuple[str, str]]:
+) -> Iterator[tuple[str, str, int]]:
     count = len(chains)
     later = np.tril(np.ones((count, count), dtype=bool))
     same = np.eye(count, dtype=bool)
     for a, b, excluded in ((moving, moving, later), (moving, resting, same), (resting, resting, later)):
         if a is None or b is None or (a is resting and moving is None):
             continue
-        for _, p, q in meetings(a, b, excluded):
-            for i, j in {(int(i), int(j)) for i, j in zip(a.lane[p], b.lane[q], strict=True)}:
-                yield min(chains[i].patch, chains[j].patch), max(chains[i].patch, chains[j].patch)
+        for i, j, frame in _first(a.lane, b.lane, meetings(a, b, excluded)):
+            yield min(chains[i].patch, chains[j].patch), max(chains[i].patch, chains[j].patch), frame
 
 
 def _with_surroundings(
     chains: tuple[Chain, ...], many: Batch | None, still: Batch, around: Surroundings, own_plates: Bools
-) -> Iterator[tuple[str, str]]:
+) -> Iterator[tuple[str, str, int]]:
     if many is None:
         return
-    for _, p, q in meetings(many, still, own_plates):
-        for i, box in {(int(i), int(box)) for i, box in zip(many.lane[p], q, strict=True)}:
-            yield chains[i].patch, around.solids[int(around.owner[box])].owner
+    for i, solid, frame in _first(many.lane, around.owner, meetings(many, still, own_plates)):
+        yield chains[i].patch, around.solids[solid].owner, frame
 
 
-def _between_clusters(still: Batch, around: Surroundings) -> Iterator[tuple[str, str]]:
+def _between_clusters(still: Batch, around: Surroundings) -> Iterator[tuple[str, str, int]]:
     by_group = Batch(still.boxes, around.group, still.low, still.high, still.least, still.most)
     count = int(around.group.max(initial=0)) + 1
-    for _, p, q in meetings(by_group, by_group, np.tril(np.ones((count, count), dtype=bool))):
-        for a, b in {(int(a), int(b)) for a, b in zip(around.owner[p], around.owner[q], strict=True)}:
-            yield around.solids[a].owner, around.solids[b].owner
+    found = meetings(by_group, by_group, np.tril(np.ones((count, count), dtype=bool)))
+    for a, b, frame in _first(around.owner, around.owner, found):
+        yield around.solids[a].owner, around.solids[b].owner, frame
+
+
+def _first(
+    first: Indices, second: Indices, found: Iterator[tuple[Indices, Indices, Indices]]
+) -> Iterator[tuple[int, int, int]]:
+    """What two labels (n,) and (m,) say of the boxes that meet, and the first frame in which they do."""
+    for frame, p, q in found:
+        pairs, place = np.unique(np.stack([first[p], second[q]], axis=1), axis=0, return_inverse=True)
+        earliest = np.full(len(pairs), np.iinfo(np.int64).max)
+        np.minimum.at(earliest, place.ravel(), frame)
+        yield from zip(pairs[:, 0].tolist(), pairs[:, 1].tolist(), earliest.tolist(), strict=True)
 
 
 def _own_plates(number: Mapping[str, int], chains: tuple[Chain, ...], around: Surroundings) -> Bools:

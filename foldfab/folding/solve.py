@@ -17,6 +17,7 @@ from foldfab.folding.repertoire import repertoire
 from foldfab.folding.scene import open_scene
 from foldfab.folding.site import sites, slab
 from foldfab.folding.soundness import disconnected, hangs_together, rigid_patches
+from foldfab.folding.symmetry import twins
 from foldfab.folding.tree import unit_tree
 from foldfab.folding.unit_fold import UnitFold
 from foldfab.folding.units import decompose
@@ -64,7 +65,7 @@ def _solved(scaffold: Scaffold, thickness: Thickness) -> FoldSolution:
         ordered, bound = _ordered(problem)
         met = first_clash(problem, open_scene(problem), ordered.folds)
         if met is None:
-            return _solution(problem, bound, ordered)
+            return solution(problem, bound, ordered)
         problem = replace(problem, banned=problem.banned | {met}, repertoires={}, solved={}, hopeless={})
     told = ", ".join(sorted({patch for patch, _ in problem.banned}))
     raise FoldingError(f"no folding solution found: {told} stay in the way of what folds before; try another thickness")
@@ -95,11 +96,12 @@ def posed(scaffold: Scaffold, thickness: Thickness) -> Problem:
     plates = [anatomy.base_boxes(base, thickness) for base in scaffold.bases]
     furniture = stacked([*plates, *(slab(site, thickness) for site in placed.values())])
     low, high = bounds(furniture)
-    return Problem(
+    problem = Problem(
         scaffold, scaffold.recipe.fold, thickness, placed, units, tree, {p: u for u in units for p in u.patches},
         {part.name: part for part in scaffold.recipe.parts},
         {base.name: anatomy.faces(base, thickness) for base in scaffold.bases}, furniture, (low.min(0), high.max(0)),
     )  # fmt: skip
+    return replace(problem, twins=twins(problem))
 
 
 def _require_variants(problem: Problem) -> None:
@@ -125,7 +127,8 @@ def _refused(ordered: Ordered) -> str:
     return "no folding solution: " + "; ".join(told)
 
 
-def _solution(problem: Problem, least: float, ordered: Ordered) -> FoldSolution:
+def solution(problem: Problem, least: float, ordered: Ordered) -> FoldSolution:
+    """The solution that an order of folds makes, no order counting less than `least` in the search."""
     chains = tuple(sorted((c for f in ordered.folds for c in f.chains), key=lambda c: c.patch))
     changed = [_modification(problem, fold, patch) for fold in ordered.folds for patch in fold.unit.patches]
     changed.sort(key=lambda m: m.patch)

@@ -213,4 +213,7 @@ def _key(
         numbers.append((round(min(flat, clear), SAME), (round(up, SAME), owner) if up < clear else None))
     place = tuple(np.round(offset, SAME)) if problem.options.stay_in_box else None
     shapes = tuple((s.owner, s.state, len(s.boxes)) for s in solids)
-    return unit, shapes, (np.round(corners, SAME) + 0.0).tobytes(), tuple(numbers), scene.gone, place
+    bounds = (np.round(corners, SAME) + 0.0).tobytes()
+    twins = {t.patch for p in unit.patches if (t := problem.twins.get(p))} & set(scene.chosen)
+    alike = tuple((p, scene.chosen[p]) for p in sorted(twins))
+    return unit, shapes, bounds, tuple(numbers), scene.gone, place, alike

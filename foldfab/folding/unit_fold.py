@@ -19,7 +19,7 @@ from foldfab.folding.press import Motion
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import blocked_pieces, prospects, unhindered
 from foldfab.folding.realise import Clash, realised
-from foldfab.folding.reasons import reasons_of
+from foldfab.folding.reasons import reason_against, reasons_of
 from foldfab.folding.repertoire import Lane, Repertoire, extend, repertoire
 from foldfab.folding.scene import Scene, alone
 from foldfab.folding.surroundings import Surroundings, held_up, look
@@ -137,30 +137,27 @@ def _fold(
     if standing:
         return Refusal(unit, f"{standing} stands in the way unfolded")
     found = prospects(problem, own, around, in_place=in_place)
-    graph = Graph(problem, own, found, around.offset)
-    short = [p for p in unit.patches if not found.lanes[p]]
-    last = "no combination of options is free of conflicts"
-    if short:
-        last = f"{', '.join(short[:3])} is too short or too steep for hinges at this scale; print larger or thinner"
+    graph = Graph(problem, own, found, around.offset, chosen=scene.chosen)
+    why: list[str] = []
     for _ in range(ROUNDS):
         picked = graph.cheapest()
         while wanted := _wanted(problem, own, graph, picked):
             for patch in wanted:
                 extend(problem, own, patch)
             found = prospects(problem, own, around, in_place=in_place)
-            graph = Graph(problem, own, found, around.offset, graph.learned)
+            graph = Graph(problem, own, found, around.offset, graph.learned, scene.chosen)
             picked = graph.cheapest()
         if picked is None:
             break
         chosen = {o.patch: o[i] for o, i in zip(graph.options, picked, strict=True)}
         result = realised(problem, scene, unit, around, chosen)
         if not isinstance(result, Clash):
-            reasons = reasons_of(problem, found, chosen)
+            reasons = reasons_of(problem, own, found, chosen)
             cost = sum(o.cost for o in chosen.values())
             return UnitFold(unit, chosen, reasons, *result, around.cluster, cost, graph.weight(picked))
-        last = last if short else result.reason
+        why += [result.reason] if result.reason not in why else []
         graph.learn(picked, result)
-    return Refusal(unit, last)
+    return Refusal(unit, reason_against(problem, own, found, why))
 
 
 def _wanted(problem: Problem, own: Repertoire, graph: Graph, picked: tuple[int, ...] | None) -> list[str]:

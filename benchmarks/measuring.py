@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import foldfab
+from foldfab.errors import RecipeError
 from foldfab.pipeline import prepare
 
 ABSENT = "-"
@@ -57,6 +58,8 @@ def timed(call: Callable[[], Any]) -> tuple[Any, float]:
 
 def told(error: Exception) -> str:
     """The first line of what went wrong; where that was not foldfab's own word for it, with its place in the code."""
+    if isinstance(error, RecipeError) and error.problems:
+        return str(error.problems[0])
     first = (str(error).splitlines() or [""])[0]
     if isinstance(error, foldfab.FoldfabError):
         return first

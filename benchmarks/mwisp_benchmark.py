@@ -110,7 +110,7 @@ def main() -> int:
         "--most", type=int, default=40, metavar="N", help="graphs of one recipe, from small to large (40)"
     )
     parser.add_argument(
-        "--networkx", type=int, default=150, metavar="N", help="options up to which networkx is run (150)"
+        "--networkx", type=int, default=300, metavar="N", help="options up to which networkx is run (300)"
     )
     parser.add_argument("--ordering", choices=("greedy", "optimal"), help="instead of the recipe's own")
     arguments = parser.parse_args()

@@ -31,6 +31,8 @@ from measuring import Column, Table, forget, ready, recipe_files, timed, told
 import foldfab
 from foldfab.folding.model import FoldSolution
 from foldfab.folding.units import decompose
+from foldfab.pipeline import compose
+from foldfab.recipe.edit import override
 from foldfab.recipe.model import Recipe
 
 AXES = ("-x", "-y", "-z")
@@ -84,10 +86,9 @@ class Row:
 def main() -> int:
     arguments = parsed()
     files = recipe_files(arguments.recipes)
+    options = options_of(arguments)
     reference = read_reference(arguments.reference) if arguments.reference else {}
     orderings = ("greedy", "optimal") if arguments.ordering == "both" else (arguments.ordering,)
-    keys = ("collisions", "thickness", "time_limit")
-    options = {key: getattr(arguments, key) for key in keys if getattr(arguments, key) is not None}
     ready()
     table = table_for(files, has_reference=bool(reference))
     table.head()
@@ -119,6 +120,17 @@ def parsed() -> argparse.Namespace:
     parser.add_argument("--reference", type=Path, metavar="FILE.csv", help="results of another program to compare with")
     parser.add_argument("--json", type=Path, metavar="FILE", help="keep the rows in this file")
     return parser.parse_args()
+
+
+def options_of(arguments: argparse.Namespace) -> dict[str, str | float]:
+    """What the arguments put over the recipes' own options; ends the program where foldfab does not take it."""
+    keys = ("collisions", "thickness", "time_limit")
+    options = {key: getattr(arguments, key) for key in keys if getattr(arguments, key) is not None}
+    try:
+        override(compose("bench", "1x1"), **options)
+    except foldfab.FoldfabError as error:
+        sys.exit(str(error))
+    return options
 
 
 def solved(

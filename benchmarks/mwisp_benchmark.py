@@ -9,7 +9,7 @@ graphs     how many; options, edges: nodes and conflicts of the largest, the cli
 ours       `foldfab.folding.choose.cheapest`: dominance, islands, branch and bound, CP-SAT where that takes too long
 CP-SAT     the plain model by ortools: one option a patch, at most one of an option and those it excludes of a patch
 HiGHS      the same as an integer program by highspy, where that is installed (`pip install -e '.[benchmark]'`)
-networkx   `max_weight_clique` on the complement graph, only of small graphs; (n) is how many of them it did
+networkx   `max_weight_clique` on the complement graph, only where it is small; (n) is how many graphs it has ended on
 agree      graphs on which all that were run find the same cost, or all find that there is no choice
 
 Times are medians of process time in ms, from the tables to the answer, one thread each. HiGHS runs in a process of its
@@ -19,6 +19,7 @@ own, because ortools brings along another version of its library, and two of the
 from __future__ import annotations
 
 import argparse
+import signal
 import statistics
 import sys
 from collections.abc import Callable, Iterator, Mapping
@@ -45,6 +46,8 @@ UNITS_PER_COST = 1e8
 """Costs are integers of this resolution where a solver wants integers."""
 SECONDS = 60.0
 """What CP-SAT and HiGHS may take for one graph; what they have by then may not agree."""
+NETWORKX_SECONDS = 5.0
+"""What networkx may take for one graph, wall time: without conflicts to prune by it is exponential in the patches."""
 NOTES = 3
 """What went wrong with one recipe is told up to this many times."""
 Picked = tuple[int, ...] | None
@@ -154,7 +157,10 @@ def compared(table: Table, file: Path, ways: Mapping[str, Run], arguments: argpa
         for name, way in ways.items():
             if name == "networkx" and (graph.options > arguments.networkx or graph.forbidden):
                 continue
-            picked, spent[name] = way(graph)
+            picked, ms = way(graph)
+            if name == "networkx" and isinstance(picked, TimeoutError):
+                continue
+            spent[name] = ms
             if isinstance(picked, Exception):
                 notes.append(f"{name}: {told(picked)}")
             elif not graph.holds(picked):
@@ -314,8 +320,25 @@ def by_networkx(graph: ConflictGraph) -> Picked:
         excluded = graph.conflicts.get((g, h))
         pairs = product(graph.alive[g], graph.alive[h])
         free.add_edges_from(((g, int(o)), (h, int(p))) for o, p in pairs if excluded is None or not excluded[o, p])
-    found = dict(nx.max_weight_clique(free)[0])
+    with limited(NETWORKX_SECONDS):
+        found = dict(nx.max_weight_clique(free)[0])
     return tuple(found[g] for g in range(len(graph.costs))) if len(found) == len(graph.costs) else None
+
+
+@contextmanager
+def limited(seconds: float) -> Iterator[None]:
+    """Ends Python code that takes longer with a TimeoutError."""
+
+    def end(_signal: int, _frame: object) -> None:
+        raise TimeoutError
+
+    before = signal.signal(signal.SIGALRM, end)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
 
 
 WAYS: Mapping[str, Way] = {

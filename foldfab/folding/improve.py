@@ -55,7 +55,7 @@ def _blamed(
     """The folds that keep later units from their cheapest choice."""
     chosen: dict[str, Variant] = {}
     for fold in known.folds:
-        cheapest = choices.get(fold.unit.name)
+        cheapest = choices[fold.unit.name] if problem.tree.units.get(fold.unit.name) is fold.unit else None
         if cheapest is not None and fold.weight > cheapest.weight + BETTER:
             own = repertoire(problem, fold.unit)
             around = look(problem, scene, own)

@@ -32,7 +32,7 @@ from foldfab.folding.scene import Scene, shown
 from foldfab.folding.surroundings import Surroundings, depends_on, look
 from foldfab.folding.symmetry import Signature, is_less, signature, unlike
 from foldfab.folding.tree import between
-from foldfab.folding.unit_fold import UnitFold
+from foldfab.folding.unit_fold import Refusal, UnitFold, fold_unit
 from foldfab.folding.units import Unit
 
 NO_MORE = 1e-5
@@ -87,18 +87,15 @@ def optimal(
         floor: by unit, what it counts at least by itself.
         work: the limit, in seconds of an ordinary machine.
     """
-    if not np.isfinite(sum(floor.values())):
-        return known, float(sum(floor.values()))
     folds = {f.unit.name: f for f in known.folds} if known else {}
     is_whole = set(folds) == set(floor)
-    groups = neighbouring(problem) if is_whole else [set(floor)]
+    groups = neighbouring(problem, scene) if is_whole else [set(floor)]
     order = [f.unit.name for f in known.folds] if known else sorted(floor)
     bound = 0.0
     for names in groups:
-        least = sum(floor[n] for n in names)
         best = sum(folds[n].weight for n in names) if is_whole else (_weight(known) if known else np.inf)
-        if best - least <= NO_MORE:
-            bound += least
+        if _is_settled(names, best, floor, is_whole=is_whole):
+            bound += best
             continue
         others = [folds[n] for n in order if n not in names] if is_whole else []
         found, group_bound = _solved(_group(problem, scene, others, {n: floor[n] for n in names}, best), work)
@@ -110,6 +107,27 @@ def optimal(
     if not is_whole:
         return known, bound
     return Ordered(tuple(folds[n] for n in order), ()), bound
+
+
+def lower_bound(problem: Problem, scene: Scene, known: Ordered, floor: Mapping[str, float]) -> float:
+    """What any order counts at least: a unit that has to do with no other one cannot do better than it does."""
+    folds = {f.unit.name: f.weight for f in known.folds}
+    if set(folds) != set(floor):
+        return float(sum(floor.values()))
+    groups = neighbouring(problem, scene)
+    best = [sum(folds[n] for n in names) for names in groups]
+    return float(
+        sum(
+            b if _is_settled(g, b, floor, is_whole=True) else sum(floor[n] for n in g)
+            for g, b in zip(groups, best, strict=True)
+        )
+    )
+
+
+def _is_settled(names: set[str], best: float, floor: Mapping[str, float], *, is_whole: bool) -> bool:
+    """Whether nothing can be cheaper than the best known of a group."""
+    is_single = is_whole and len(names) == 1
+    return is_single or best - sum(floor[n] for n in names) <= NO_MORE
 
 
 def other(
@@ -155,33 +173,33 @@ def _solved(group: _Group, work: float) -> tuple[tuple[UnitFold, ...] | None, fl
     No folds where none is cheaper than what is known, or none was found within the work.
     """
     bound, hint = sum(group.floor.values()), None
+    best: tuple[UnitFold, ...] | None = None
     while work > 0:
         options, master = _posed(group)
         work -= BUILDING
-        fresh = len(group.lessons)
-        lanes = sum(map(len, group.lanes.values()))
+        fresh, lanes = len(group.lessons), sum(map(len, group.lanes.values()))
         while work > 0:
             proposal, least, spent = master.solved(work * SHARE, hint)
-            work -= spent
+            work -= spent + PLAYING * len(group.units)
             bound = max(bound, min(least, group.known))
             if proposal is None or least >= group.known - NO_MORE:
-                return None, bound
-            result = _played(group, options, proposal)
-            work -= PLAYING * len(group.units)
-            if isinstance(result, tuple):
-                is_best = proposal.bound >= _total(options, proposal) - NO_MORE
-                return (result, bound) if is_best else (result, min(bound, _total(options, proposal)))
+                return best, bound
+            folds, holds = _played(group, options, proposal)
+            if folds is not None and _counted(folds) < group.known - NO_MORE:
+                best, group.known = folds, _counted(folds)
+            if holds and folds is not None and proposal.bound >= _counted(folds) - NO_MORE:
+                return best, bound
             hint = proposal
             if sum(map(len, group.lanes.values())) > lanes:
                 break
             for lesson in group.lessons[fresh:]:
                 master.add(_cut(options, lesson))
             fresh = len(group.lessons)
-    return None, bound
+    return best, bound
 
 
-def _total(options: Mapping[str, Options], proposal: Proposal) -> float:
-    return float(sum(options[p].weight[i] for p, i in proposal.chosen.items()))
+def _counted(folds: tuple[UnitFold, ...]) -> float:
+    return sum(fold.weight for fold in folds)
 
 
 def _posed(group: _Group) -> tuple[dict[str, Options], Master]:
@@ -245,22 +263,31 @@ def _place(options: Options, index: int) -> Place:
     return (found[0].number, found[1]) if found is not None else None
 
 
-def _played(group: _Group, options: Mapping[str, Options], proposal: Proposal) -> tuple[UnitFold, ...] | None:
-    """The folds of a proposal, or None where it does not hold and something was learned from that."""
-    problem, scene = group.problem, group.scene
+def _played(
+    group: _Group, options: Mapping[str, Options], proposal: Proposal
+) -> tuple[tuple[UnitFold, ...] | None, bool]:
+    """The folds of a proposal, and whether it holds as it is; where it does not, something was learned from that.
+
+    A unit that cannot fold as proposed folds as it best can, so that a proposal that almost holds still makes a fold.
+    """
+    problem, scene, holds = group.problem, group.scene, True
     by_name = {u.name: u for u in group.units}
     for unit in group.units:
         scene = shown(scene, unit, _plain_chains(problem, unit, options, proposal), is_folded=False)
     folds: list[UnitFold] = []
     done: set[str] = set()
     for name in proposal.order:
-        fold = _unit_played(group, scene, by_name[name], options, proposal, done)
+        fold = _unit_played(group, scene, by_name[name], options, proposal, done) if holds else None
         if fold is None:
-            return None
+            holds = False
+            repaired = fold_unit(problem, scene, by_name[name])
+            if isinstance(repaired, Refusal):
+                return None, False
+            fold = repaired
         folds.append(fold)
         scene = after(problem, scene, fold)
         done.add(name)
-    return tuple(folds)
+    return tuple(folds), holds
 
 
 def _plain_chains(problem: Problem, unit: Unit, options: Mapping[str, Options], proposal: Proposal) -> list[Chain]:
@@ -374,8 +401,9 @@ def _lessons(
         deciding = {problem.unit_of[q].name for q in strangers}
         for owner in met:
             deciding |= _on_the_way(scene, unit, around, owner)
+        # What lies or stands between the bases decides how far they come down, and so how the chains fold.
+        deciding |= depends_on(problem, unit, around)
         if lies_low:
-            deciding |= depends_on(problem, unit, around)
             low = {s.owner for s in around.solids if s.state == "folded"} & set(options)
             held += [(q, _alike(options[q], proposal.chosen[q], "any window")) for q in sorted(low - set(strangers))]
         if clash.cuts:

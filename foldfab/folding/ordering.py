@@ -75,11 +75,6 @@ def floors(problem: Problem) -> dict[str, Choice]:
     return {u.name: least_choice(problem, repertoire(problem, u)) for u in problem.units}
 
 
-def tight_floors(problem: Problem, scene: Scene) -> dict[str, float]:
-    """By unit, what it counts where nothing but itself is there and it is played through: no order lets it fold for less."""
-    return {u.name: _weight(fold_alone(problem, scene, u)) for u in problem.units}
-
-
 def greedy(problem: Problem, scene: Scene, floor: Mapping[str, Choice]) -> Ordered:
     """Folds all units of the open scene one after another; `floor` is the cheapest choice of each."""
     state = _State(problem, scene, floor, _beside(problem), {u.name: u for u in problem.units})
@@ -163,12 +158,14 @@ def _folded(state: _State, name: str) -> UnitFold | None:
     return final if isinstance(final, UnitFold) else fold
 
 
-def neighbouring(problem: Problem) -> list[set[str]]:
-    """Groups of units whose folds reach into each other's space, by name."""
+def neighbouring(problem: Problem, scene: Scene) -> list[set[str]]:
+    """Groups of units that have to do with each other, by name: their folds share space, or one sees the other."""
     graph: nx.Graph[str] = nx.Graph()
     for name, others in _beside(problem).items():
+        unit = problem.tree.units[name]
+        around = look(problem, scene, repertoire(problem, unit))
         graph.add_node(name)
-        graph.add_edges_from((name, other) for other in others)
+        graph.add_edges_from((name, other) for other in others | depends_on(problem, unit, around))
     return sorted((set(c) for c in nx.connected_components(graph)), key=min)
 
 

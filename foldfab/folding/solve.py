@@ -11,8 +11,8 @@ from foldfab.folding import anatomy, basic
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.improve import improved, weight
 from foldfab.folding.model import FoldSolution, Modification, Step, Thickness
-from foldfab.folding.optimum import NO_MORE, optimal
-from foldfab.folding.ordering import Ordered, floors, greedy, tight_floors, travel
+from foldfab.folding.optimum import NO_MORE, lower_bound, optimal
+from foldfab.folding.ordering import Ordered, floors, greedy, travel
 from foldfab.folding.problem import Problem
 from foldfab.folding.rehearsal import first_clash
 from foldfab.folding.scene import open_scene
@@ -77,10 +77,11 @@ def _ordered(problem: Problem) -> tuple[Ordered, float]:
     scene, choices = open_scene(problem), floors(problem)
     ordered = greedy(problem, scene, choices)
     floor = {name: choice.weight for name, choice in choices.items()}
-    if ordered.refusals or weight(ordered) - sum(floor.values()) > NO_MORE:
-        floor = tight_floors(problem, scene)
-    bound = sum(floor.values())
-    if problem.options.ordering == "optimal" and (ordered.refusals or weight(ordered) - bound > NO_MORE):
+    if not ordered.refusals and weight(ordered) - sum(floor.values()) <= NO_MORE:
+        return ordered, sum(floor.values())
+    if problem.options.ordering == "greedy":
+        bound = sum(floor.values()) if ordered.refusals else lower_bound(problem, scene, ordered, floor)
+    else:
         known = None if ordered.refusals else improved(problem, ordered, choices)
         found, bound = optimal(problem, scene, known, floor, problem.options.time_limit)
         ordered = found or ordered

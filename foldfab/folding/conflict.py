@@ -28,7 +28,7 @@ def compare(problem: Problem, own: Repertoire, many: Iterable[Lane]) -> None:
     fresh = [x for x in many if x.number not in own.compared]
     if not fresh:
         return
-    # Plinths shorten a chain, but thickness may only add constraints (section 5.6): what its plain lane meets, it meets.
+    # Plinths shorten a chain, but thickness only adds constraints (section 5.6): what its plain lane meets, it meets.
     plain = {
         x.number: lane(problem, own, x.patch, replace(x.variant, pads=(0.0, 0.0))) for x in fresh if any(x.variant.pads)
     }
@@ -57,7 +57,7 @@ def compare(problem: Problem, own: Repertoire, many: Iterable[Lane]) -> None:
 def _regions_met(
     problem: Problem, own: Repertoire, fresh: list[Lane], known: list[Lane], cuts: Array, same: Bools, once: Bools
 ) -> dict[tuple[int, int], Bools]:
-    """The paper's own test: folding time intervals overlap, and so do the regions that the patches cover when folded."""
+    """The paper's own test: folding time intervals overlap, and so do the regions that patches cover when folded."""
     start = np.array([x.active.start for x in own.lanes])
     stop = np.array([x.active.stop for x in own.lanes])
     apart = (start[:, None] >= stop) | (start >= stop[:, None])
@@ -161,11 +161,11 @@ def _table(
                     if pieces is not None:
                         met[i, :, j] += pieces if p < q else pieces.T
             never[i, j] = not drag_alike(a, b) or not snap_alike(a, b)
-    return _of_windows(met, never, inside, count)
+    return _of_windows(met.astype(np.float64), never, inside, count)
 
 
 def _of_windows(met: Array, never: Bools, inside: Array, count: int) -> Bools:
-    """Which options conflict, from the pieces that meet (n, N_s, m, N_s) and the lanes that never go together (n, m)."""
+    """Which options conflict: those whose pieces meet (n, N_s, m, N_s), and lanes that never go together (n, m)."""
     shape = (met.shape[0] * count + 1, met.shape[2] * count + 1)
     found = np.zeros(shape, dtype=bool)
     if met.any() or never.any():

@@ -1,8 +1,8 @@
 """A better start for the optimum: the greedy order once more, without what stood in a unit's way.
 
-Where a unit costs more than it must, the folds that took its room are to blame. Each of them is forbidden in turn and the
-greedy order is made anew; what is cheaper is kept. The nearer the start is to the optimum, the smaller is the constraint
-program that proves it.
+Where a unit costs more than it must, the folds that took its room are to blame. Each of them is forbidden in turn and
+the greedy order is made anew; what is cheaper is kept. The nearer the start is to the optimum, the smaller is the
+constraint program that proves it.
 """
 
 from __future__ import annotations

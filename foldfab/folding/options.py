@@ -20,9 +20,9 @@ from foldfab.folding.repertoire import Lane, awkwardness
 from foldfab.geometry.arrays import Array, Bools
 
 DELETION = 10.0
-"""What every deletion counts in the search beyond eq. 3, more than all of eq. 1 can be: nobody wants a shelf without its
-wall because that is cheaper than a hinge. So as few patches as possible are deleted, and of such solutions the cheapest
-is taken. The cost that is reported is the paper's."""
+"""What every deletion counts in the search beyond eq. 3, more than all of eq. 1 can be: nobody wants a shelf without
+its wall because that is cheaper than a hinge. So as few patches as possible are deleted, and of such solutions the
+cheapest is taken. The cost that is reported is the paper's."""
 PREFERENCE = 1e-6
 """Weight of the preferences that decide between options of equal cost: small plinths, staying within the outline."""
 

@@ -192,7 +192,7 @@ def _owner_standing(solid: Solid, held_by: str) -> str:
 
 
 def _rooms(scene: Scene, shift: Array, p: Indices, q: Indices) -> Array:
-    """(n,) how far the upper solids `q` may come down on the lower ones `p`, mm; infinite where they pass each other."""
+    """(n,) how far the solids `q` may come down on the lower ones `p`, mm; infinite where they pass each other."""
     room: Array = scene.low[q, 2] + shift[q, 2] - scene.high[p, 2] - shift[p, 2]
     for k, (a, b) in enumerate(zip(p.tolist(), q.tolist(), strict=True)):
         if len(scene.solids[a].boxes) > 1 or len(scene.solids[b].boxes) > 1:

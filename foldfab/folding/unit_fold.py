@@ -93,7 +93,7 @@ def fold_seen(
 
 
 def fold_alone(problem: Problem, scene: Scene, unit: Unit) -> UnitFold | Refusal:
-    """What a unit could do where nothing but itself is there; where that is nothing, it is not tried again and again."""
+    """What a unit could do where nothing but itself is there; where that is nothing, it is not tried any more."""
     bare = alone(scene, unit)
     own = repertoire(problem, unit)
     found = fold_seen(problem, bare, own, look(problem, bare, own))

@@ -1,7 +1,7 @@
 """What a proposal that does not hold teaches: cuts that say what must not be together, in which order of the units.
 
 A cut may only forbid what cannot hold. What meets depends on the two options and on where the two things are, so the
-order of all units that decide that belongs to the cut; what lies folded between the bases decides how far they come down.
+order of all units that decide that belongs to the cut; what lies folded between bases decides how far they come down.
 """
 
 from __future__ import annotations

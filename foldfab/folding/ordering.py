@@ -24,6 +24,7 @@ from foldfab.folding.unit_fold import (
     Choice,
     Refusal,
     UnitFold,
+    estimated,
     fold_alone,
     fold_seen,
     fold_unit,
@@ -134,10 +135,7 @@ def _guessed(state: _State, scene: Scene, unit: Unit, around: Surroundings) -> f
     own, cheapest = repertoire(state.problem, unit), state.floor[unit.name]
     if not is_solved(state.problem, around) and has_room(state.problem, own, around, cheapest):
         return cheapest.weight
-    found = fold_seen(state.problem, scene, own, around)
-    if isinstance(found, Refusal) and unit not in state.problem.hopeless:
-        fold_alone(state.problem, state.scene, unit)
-    return _weight(found)
+    return min(estimated(state.problem, scene, own, around), REFUSED)
 
 
 def _folded(state: _State, name: str) -> UnitFold | None:
@@ -145,6 +143,8 @@ def _folded(state: _State, name: str) -> UnitFold | None:
     own = repertoire(state.problem, state.rest[name])
     around = look(state.problem, state.scene, own)
     fold = fold_seen(state.problem, state.scene, own, around)
+    if isinstance(fold, Refusal) and not around.standing and own.unit not in state.problem.hopeless:
+        fold_alone(state.problem, state.scene, own.unit)
     if round(_weight(fold) - state.guess[name], DIGITS) > 0:
         state.guess[name] = _weight(fold)
         return None
@@ -193,7 +193,7 @@ def _best(state: _State) -> str | None:
             does_hold = fold is not None
             if fold is None:
                 break
-            change = round(_change(state, fold), DIGITS)
+            change = round(_change(state, fold), DIGITS) if len(state.rest) > 1 else 0.0
             best = min(best, (change, name)) if best is not None else (change, name)
         # Where what was guessed does not hold, the look-ahead begins anew; guesses only ever rise.
         if does_hold:

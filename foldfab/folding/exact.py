@@ -22,8 +22,9 @@ WORK = 20.0
 def proven(
     alive: Mapping[int, Bools], costs: list[Array], table: list[dict[int, Bools]],
     forbidden: list[tuple[tuple[int, int], ...]], known: Mapping[int, int] | None,
-) -> dict[int, int] | None:  # fmt: skip
-    """The cheapest option for each group, or None where there is no choice without conflicts.
+) -> tuple[dict[int, int] | None, float]:  # fmt: skip
+    """The cheapest option for each group, or None where there is no choice without conflicts, and by how much it may be
+    dearer than the cheapest where the work did not suffice to tell.
 
     Args:
         alive: by group, which of its options (n,) may be taken.
@@ -55,6 +56,11 @@ def proven(
     solver.parameters.random_seed = 0
     solver.parameters.max_deterministic_time = WORK
     status = solver.solve(model)
-    if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-        return {key[0]: key[1] for key, var in on.items() if solver.value(var)}
-    return dict(known) if known is not None else None
+    if status == cp_model.INFEASIBLE:
+        return None, 0.0
+    bound = float(solver.best_objective_bound) / UNITS_PER_COST
+    best = {key[0]: key[1] for key, var in on.items() if solver.value(var)} if status != cp_model.UNKNOWN else known
+    if best is None:
+        return None, 0.0
+    spent = sum(float(costs[g][o]) for g, o in best.items())
+    return dict(best), 0.0 if status == cp_model.OPTIMAL else max(spent - bound, 0.0)

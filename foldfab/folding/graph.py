@@ -47,6 +47,7 @@ class Graph:
                 self.tables[place[a], place[b]] = made
         self._treat_alike(problem, chosen or {})
         self.forbidden: set[Combination] = set()
+        self.gaps: list[float] = []
         self.learned: list[Lesson] = []
         for clash, places in learned:
             self.learn(tuple(o.index(place) for o, place in zip(self.options, places, strict=True)), clash)
@@ -66,7 +67,8 @@ class Graph:
 
     def cheapest(self) -> tuple[int, ...] | None:
         """The cheapest choice, one option a patch."""
-        return cheapest(self.costs, self.tables, frozenset(self.forbidden))
+        self.gaps.clear()
+        return cheapest(self.costs, self.tables, frozenset(self.forbidden), self.gaps)
 
     def weight(self, picked: tuple[int, ...]) -> float:
         """What a choice counts in the search."""

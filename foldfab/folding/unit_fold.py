@@ -18,7 +18,7 @@ from foldfab.folding.graph import Graph
 from foldfab.folding.model import Chain
 from foldfab.folding.press import Motion
 from foldfab.folding.problem import Problem
-from foldfab.folding.prospects import blocked_pieces, prospects, unhindered
+from foldfab.folding.prospects import Prospects, blocked_pieces, prospects, unhindered
 from foldfab.folding.realise import Clash, realised
 from foldfab.folding.reasons import reason_against, reasons_of
 from foldfab.folding.repertoire import Lane, Repertoire, extend
@@ -135,7 +135,10 @@ def least_choice(problem: Problem, own: Repertoire) -> Choice:
     if picked is None:
         return Choice(np.inf, {})
     places = {o.patch: o.place(i) for o, i in zip(graph.options, picked, strict=True)}
-    return Choice(graph.weight(picked), {p: place for p, place in places.items() if place is not None})
+    # Where the work did not suffice to prove the choice, what it may be too dear by is no part of what must be paid.
+    return Choice(
+        graph.weight(picked) - sum(graph.gaps), {p: place for p, place in places.items() if place is not None}
+    )
 
 
 def is_solved(problem: Problem, around: Surroundings) -> bool:

@@ -8,6 +8,7 @@ same unit always gets the same answer.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -51,6 +52,14 @@ def proven(
     model.minimize(sum(round(float(costs[g][o]) * UNITS_PER_COST) * var for (g, o), var in on.items()))
     for key in (known or {}).items():
         model.add_hint(on[key], True)
+    return _solved(model, on, costs, known)
+
+
+def _solved(
+    model: Any, on: Mapping[tuple[int, int], Any], costs: list[Array], known: Mapping[int, int] | None
+) -> tuple[dict[int, int] | None, float]:
+    from ortools.sat.python import cp_model
+
     solver = cp_model.CpSolver()
     solver.parameters.num_workers = 1
     solver.parameters.random_seed = 0

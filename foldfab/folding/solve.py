@@ -127,7 +127,9 @@ def _require_allowed(problem: Problem) -> None:
             if not np.isfinite(options[patch].weight).any():
                 names = ", ".join(part.name for part in demanding(problem, patch))
                 able = sorted({(x.variant.mechanism, x.variant.hinges) for x in own.plain[patch]})
-                told = ", ".join(f"{how} with {count} hinge{'s' * (count > 1)}" if count else how for how, count in able)
+                told = ", ".join(
+                    f"{how} with {count} hinge{'s' * (count > 1)}" if count else how for how, count in able
+                )
                 raise FoldingError(
                     f"what is pinned or forbidden for {names} leaves {patch} nothing that it can do; "
                     f"it can fold {told or 'not at all'}, or be narrowed or deleted where that is not ruled out"

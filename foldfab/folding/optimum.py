@@ -30,7 +30,7 @@ from foldfab.folding.unit_fold import UnitFold
 NO_MORE = 1e-5
 """What preferences between options of equal cost may add up to."""
 PLAYING = 4e-3
-"""Charge for a unit that is played, s."""
+"""Charge for a unit that is played through, s."""
 BUILDING = 2e-2
 """Charge for a constraint program that is built, s."""
 SHARE = 0.5
@@ -53,15 +53,17 @@ def optimal(
     is_whole = set(folds) == set(floor)
     groups = neighbouring(problem, scene) if is_whole else [set(floor)]
     order = [f.unit.name for f in known.folds] if known else sorted(floor)
-    bound = 0.0
-    for names in groups:
-        best = sum(folds[n].weight for n in names) if is_whole else (_weight(known) if known else np.inf)
-        if _is_settled(names, best, floor, is_whole=is_whole):
-            bound += best
-            continue
+    best = (
+        [sum(folds[n].weight for n in names) for names in groups] if is_whole else [_weight(known) if known else np.inf]
+    )
+    settled = [_is_settled(names, b, floor, is_whole=is_whole) for names, b in zip(groups, best, strict=True)]
+    bound = float(sum(b for b, done in zip(best, settled, strict=True) if done))
+    left = [(names, b) for names, b, done in zip(groups, best, settled, strict=True) if not done]
+    for names, least in left:
         others = [folds[n] for n in order if n not in names] if is_whole else []
-        found, group_bound = _solved(_group(problem, scene, others, {n: floor[n] for n in names}, best), work)
-        bound += min(group_bound, best)
+        group = _group(problem, scene, others, {n: floor[n] for n in names}, least)
+        found, group_bound = _solved(group, work / len(left))
+        bound += min(group_bound, least)
         if found is not None:
             rest = [n for n in order if n not in names] if is_whole else []
             folds = {**{n: folds[n] for n in rest}, **{f.unit.name: f for f in found}}
@@ -142,11 +144,13 @@ def _solved(group: Group, work: float) -> tuple[tuple[UnitFold, ...] | None, flo
         fresh, lanes = len(group.lessons), sum(map(len, group.lanes.values()))
         while work > 0:
             proposal, least, spent = master.solved(work * SHARE, hint)
-            work -= spent + PLAYING * len(group.units)
+            work -= spent
             bound = max(bound, min(least, group.known))
             if proposal is None or least >= group.known - NO_MORE:
                 return best, bound
+            before = len(group.problem.plays)
             folds, holds = played(group, options, proposal)
+            work -= PLAYING * (1 + len(group.problem.plays) - before)
             if folds is not None and _counted(folds) < group.known - NO_MORE:
                 best, group.known = folds, _counted(folds)
             if holds and folds is not None and proposal.bound >= _counted(folds) - NO_MORE:

@@ -11,7 +11,7 @@ from foldfab.folding import anatomy, basic
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.improve import improved, weight
 from foldfab.folding.model import FoldSolution, Modification, Step, Thickness
-from foldfab.folding.optimum import NO_MORE, lower_bound, optimal
+from foldfab.folding.optimum import NO_MORE, PLAYING, lower_bound, optimal
 from foldfab.folding.options import options_of
 from foldfab.folding.ordering import Ordered, floors, greedy, travel
 from foldfab.folding.problem import Problem, demanding
@@ -90,8 +90,10 @@ def _ordered(problem: Problem) -> tuple[Ordered, float]:
     if problem.options.ordering == "greedy":
         bound = sum(floor.values()) if ordered.refusals else lower_bound(problem, scene, ordered, floor)
     else:
+        before = len(problem.plays)
         known = None if ordered.refusals else improved(problem, ordered, choices)
-        found, bound = optimal(problem, scene, known, floor, problem.options.time_limit)
+        work = problem.options.time_limit - PLAYING * (len(problem.plays) - before)
+        found, bound = optimal(problem, scene, known, floor, work)
         ordered = found or ordered
     if ordered.refusals:
         raise FoldingError(_refused(ordered))

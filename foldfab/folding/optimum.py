@@ -29,7 +29,7 @@ from foldfab.folding.unit_fold import UnitFold
 
 NO_MORE = 1e-5
 """What preferences between options of equal cost may add up to."""
-PLAYING = 4e-3
+PLAYING = 3e-3
 """Charge for a unit that is played through, s."""
 BUILDING = 2e-2
 """Charge for a constraint program that is built, s."""

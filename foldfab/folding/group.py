@@ -17,6 +17,7 @@ from foldfab.folding.repertoire import Lane
 from foldfab.folding.scene import Scene
 from foldfab.folding.symmetry import Signature, is_less, signature, unlike
 from foldfab.folding.units import Unit
+from foldfab.geometry.arrays import Bools
 
 Place = tuple[int, tuple[int, int]] | None
 """A lane by its number and a window; None where a patch is deleted."""
@@ -54,11 +55,13 @@ def posed(group: Group) -> tuple[dict[str, Options], Master]:
     problem = group.problem
     options: dict[str, Options] = {}
     tables = {}
+    ways: dict[str, list[dict[str, Bools]]] = {}
     for unit in group.units:
         own = repertoire(problem, unit)
         found = _all_of(group, unit)
         graph = Graph(problem, own, found, np.zeros(3))
         options.update({o.patch: o for o in graph.options})
+        ways[unit.name] = [dict(zip(unit.patches, masks, strict=True)) for masks in graph.modes]
         tables.update({(unit.patches[g], unit.patches[h]): m for (g, h), m in graph.tables.items()})
     spare = group.known - sum(float(o.weight.min()) for o in options.values())
     worth = {p: np.nonzero(o.weight - o.weight.min() <= spare)[0].tolist() for p, o in options.items()}
@@ -71,6 +74,8 @@ def posed(group: Group) -> tuple[dict[str, Options], Master]:
                 twin.patch,
                 unlike(options[patch], options[twin.patch], problem.options.shrink_steps, is_reversed=twin.is_reversed),
             )
+    for many in ways.values():
+        master.one_of(many)
     for unit in group.units:
         master.at_least({p: options[p].weight for p in unit.patches}, group.floor[unit.name])
     for one in group.excluded:

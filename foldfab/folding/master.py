@@ -86,6 +86,17 @@ class Master:
         terms += [self._is_before(*pair) for pair in cut.order]
         self.model.add(sum(terms) <= len(terms) - 1)
 
+    def one_of(self, ways: list[dict[str, Bools]]) -> None:
+        """Demands that all patches take options (n,) of the same one of several ways."""
+        chosen = [self.model.new_bool_var(f"way {k}") for k in range(len(ways))]
+        if ways:
+            self.model.add_exactly_one(chosen)
+        for way, literal in zip(ways, chosen, strict=True):
+            for p, mask in way.items():
+                for i in self.worth[p]:
+                    if not mask[i]:
+                        self.model.add_implication(self.on[p, i], ~literal)
+
     def treat_alike(self, p: str, q: str, apart: Bools) -> None:
         """Demands options of two patches that are not apart (n, m)."""
         self._exclude(p, q, apart)

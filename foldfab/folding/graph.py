@@ -18,7 +18,7 @@ from foldfab.folding.symmetry import bound, signature, unlike
 from foldfab.geometry.arrays import Array, Bools
 
 MANY = 16
-"""Patches of a unit beyond which each way to drag its bases is looked at by itself, instead of every pair of patches."""
+"""Patches of a unit beyond which each way to drag its bases is looked at by itself, and not every pair of patches."""
 
 Lesson = tuple[Clash, tuple[tuple[Lane, tuple[int, int]] | None, ...]]
 """A clash and what was chosen for each patch of the unit."""

@@ -10,11 +10,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from foldfab.folding.congruent import repertoire
 from foldfab.folding.group import Group, Lesson, Place, place_of
 from foldfab.folding.master import Order, Proposal
 from foldfab.folding.options import Options
 from foldfab.folding.problem import Problem
-from foldfab.folding.prospects import Prospects
+from foldfab.folding.prospects import Prospects, leaves_the_box
 from foldfab.folding.realise import Clash
 from foldfab.folding.scene import Scene
 from foldfab.folding.surroundings import Surroundings, depends_on
@@ -26,6 +27,21 @@ def must_wait(problem: Problem, unit: Unit, options: Mapping[str, Options], patc
     """A unit that would bring bases together cannot fold before what stands between them, unless that is deleted."""
     kept = frozenset(place_of(options[patch], i) for i in range(len(options[patch].price) - 1))
     return Lesson(((patch, kept),), ((unit.name, problem.unit_of[patch].name),))
+
+
+def out_of_the_box(
+    group: Group, unit: Unit, around: Surroundings, options: Mapping[str, Options], proposal: Proposal, done: set[str]
+) -> list[Lesson]:
+    """The lanes of a proposal that leave the bounding box from where the units before it have carried the unit."""
+    problem, own = group.problem, repertoire(group.problem, unit)
+    found = []
+    for patch in unit.patches if problem.options.stay_in_box else ():
+        place = options[patch].place(proposal.chosen[patch])
+        if place is not None and leaves_the_box(problem, own, around, place[0]):
+            held = frozenset((place[0].number, w) for w in options[patch].windows)
+            others = {u.name for u in group.units}
+            found.append(Lesson(((patch, held),), _as_it_is(group, unit, others, done)))
+    return found
 
 
 def lessons_of_others(

@@ -97,7 +97,7 @@ def _look_at(
     room.update(found)
     met.update(hit)
     for x in many:
-        if x.is_out or (problem.options.stay_in_box and _leaves_box(problem, own, around, x)):
+        if x.is_out or (problem.options.stay_in_box and leaves_the_box(problem, own, around, x)):
             room[x.number] = np.ones_like(room[x.number])
             met[x.number].add(-1)
 
@@ -216,7 +216,8 @@ def _needed_pads(
     return (pads[0], pads[1])
 
 
-def _leaves_box(problem: Problem, own: Repertoire, around: Surroundings, x: Lane) -> bool:
+def leaves_the_box(problem: Problem, own: Repertoire, around: Surroundings, x: Lane) -> bool:
+    """Whether a lane, or what it carries along, leaves the bounding box of the open furniture."""
     root = own.unit.bases[int(around.cluster[0])]
     for section in x.active:
         found = swept(problem, own, (x,), section)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from foldfab.folding import basic
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.group import Group
-from foldfab.folding.lessons import lessons_of, lessons_of_others, must_wait
+from foldfab.folding.lessons import lessons_of, lessons_of_others, must_wait, out_of_the_box
 from foldfab.folding.master import Proposal
 from foldfab.folding.model import Chain
 from foldfab.folding.options import Options
@@ -68,6 +68,10 @@ def _unit_played(
     around = look(problem, scene, own)
     if around.standing:
         group.lessons += [must_wait(problem, unit, options, patch) for patch in sorted(around.standing)]
+        return None
+    left = out_of_the_box(group, unit, around, options, proposal, done)
+    if left:
+        group.lessons += left
         return None
     chosen = {p: options[p][proposal.chosen[p]] for p in unit.patches}
     result = realised(problem, scene, unit, around, chosen)

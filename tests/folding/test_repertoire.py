@@ -20,6 +20,7 @@ from foldfab.folding.repertoire import (
     Repertoire,
     awkwardness,
     cuts_of,
+    extend,
     far_shift,
     lane,
     repertoire,
@@ -28,6 +29,7 @@ from foldfab.folding.repertoire import (
     swept,
     upright,
 )
+from foldfab.folding.units import Unit
 from foldfab.geometry.boxes import bounds
 from foldfab.recipe.model import Part
 
@@ -35,9 +37,18 @@ Make = Callable[..., Problem]
 IN_PLACE = Variant("in-place", 1, "r")
 
 
+def whole(made: Problem, unit: Unit) -> Repertoire:
+    """The repertoire of a unit with all lanes that are there."""
+    own = repertoire(made, unit)
+    for patch in unit.patches:
+        while own.later[patch]:
+            extend(made, own, patch)
+    return own
+
+
 def only(made: Problem) -> Repertoire:
     (unit,) = made.units
-    return repertoire(made, unit)
+    return whole(made, unit)
 
 
 def lanes_of(own: Repertoire, patch: str, mechanism: str, hinges: int) -> list[Lane]:
@@ -80,7 +91,7 @@ def test_a_lane_starts_as_high_as_it_stood_open_and_ends_flat(problem: Make, nam
     """Accordions are looked at from where their snap is over: until then their bases stand still."""
     made = problem(name)
     for unit in made.units:
-        own = repertoire(made, unit)
+        own = whole(made, unit)
         for x in own.lanes:
             start, end = own.movers[x.number][x.active.start], own.movers[x.number][x.active.stop - 1]
             first = follow_down(x.chain, np.zeros(1)) if x.snap > 0 else np.zeros(1)
@@ -169,7 +180,7 @@ def test_all_that_is_swept_is_in_reach_as_seen_from_every_base(problem: Make, na
     made = problem(name)
     margin = ROOM_THICKNESSES * 4.3
     for unit in made.units:
-        own = repertoire(made, unit)
+        own = whole(made, unit)
         for x in own.lanes:
             for section, boxes in own.movers[x.number].items():
                 low, high = bounds(boxes)

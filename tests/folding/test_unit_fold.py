@@ -19,7 +19,7 @@ from foldfab.folding.repertoire import repertoire
 from foldfab.folding.scene import Scene, alone, open_scene
 from foldfab.folding.solve import NO_MORE
 from foldfab.folding.surroundings import look
-from foldfab.folding.unit_fold import Refusal, UnitFold, fold_seen, fold_unit, least_weight
+from foldfab.folding.unit_fold import Refusal, UnitFold, fold_seen, fold_unit, least_choice
 
 Make = Callable[..., Problem]
 Folded = Callable[[Problem], tuple[Scene, list[tuple[Scene, UnitFold]]]]
@@ -76,16 +76,16 @@ def test_nothing_folds_for_less_than_without_surroundings_and_unplayed(
 ) -> None:
     made = problem(name, slanting=slanting)
     for scene, fold in folded(made)[1]:
-        least = least_weight(made, repertoire(made, fold.unit))
+        least = least_choice(made, repertoire(made, fold.unit))
         by_itself = fold_unit(made, alone(scene, fold.unit), fold.unit)
         assert isinstance(by_itself, UnitFold)
         # Preferences depend on where it has been carried to.
         assert least <= by_itself.weight + NO_MORE and by_itself.weight <= fold.weight + NO_MORE
 
 
-def test_the_least_weight_is_that_of_the_cheapest_options_where_nothing_conflicts(problem: Make) -> None:
+def test_the_least_choice_is_that_of_the_cheapest_options_where_nothing_conflicts(problem: Make) -> None:
     made = problem("h_scaffold", slanting=False)
-    assert least_weight(made, repertoire(made, made.units[0])) == pytest.approx(0.5 / 3)
+    assert least_choice(made, repertoire(made, made.units[0])) == pytest.approx(0.5 / 3)
 
 
 def test_what_stands_unfolded_is_named(problem: Make) -> None:

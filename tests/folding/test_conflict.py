@@ -12,25 +12,17 @@ import pytest
 from foldfab.folding.basic import windows
 from foldfab.folding.conflict import compare, drag_alike, neighbours, snap_alike, table, windows_table
 from foldfab.folding.problem import Problem
-from foldfab.folding.repertoire import TOUCH, Lane, Repertoire, extend, repertoire, upright
-from foldfab.folding.units import Unit
+from foldfab.folding.repertoire import TOUCH, Lane, Repertoire, upright
 from foldfab.geometry.arrays import Bools
 from foldfab.geometry.boxes import Boxes, grown, moved, overlaps
 from foldfab.recipe.model import Part
+
+from .every import whole
 
 Make = Callable[..., Problem]
 STEPS = 3
 SHORT = 1e-6
 """Pieces end this much before their cuts."""
-
-
-def whole(made: Problem, unit: Unit) -> Repertoire:
-    """The repertoire of a unit with all lanes that are there."""
-    own = repertoire(made, unit)
-    for patch in unit.patches:
-        while own.later[patch]:
-            extend(made, own, patch)
-    return own
 
 
 def only(made: Problem) -> Repertoire:

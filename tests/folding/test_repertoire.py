@@ -20,7 +20,6 @@ from foldfab.folding.repertoire import (
     Repertoire,
     awkwardness,
     cuts_of,
-    extend,
     far_shift,
     lane,
     repertoire,
@@ -29,21 +28,14 @@ from foldfab.folding.repertoire import (
     swept,
     upright,
 )
-from foldfab.folding.units import Unit
 from foldfab.geometry.boxes import bounds
 from foldfab.recipe.model import Part
 
+from .every import whole
+
 Make = Callable[..., Problem]
 IN_PLACE = Variant("in-place", 1, "r")
-
-
-def whole(made: Problem, unit: Unit) -> Repertoire:
-    """The repertoire of a unit with all lanes that are there."""
-    own = repertoire(made, unit)
-    for patch in unit.patches:
-        while own.later[patch]:
-            extend(made, own, patch)
-    return own
+K = 4.0
 
 
 def only(made: Problem) -> Repertoire:
@@ -180,6 +172,7 @@ def test_all_that_is_swept_is_in_reach_as_seen_from_every_base(problem: Make, na
     made = problem(name)
     margin = ROOM_THICKNESSES * 4.3
     for unit in made.units:
+        first = {x.number for x in repertoire(made, unit).lanes}
         own = whole(made, unit)
         for x in own.lanes:
             for section, boxes in own.movers[x.number].items():
@@ -187,8 +180,10 @@ def test_all_that_is_swept_is_in_reach_as_seen_from_every_base(problem: Make, na
                 for base in unit.bases:
                     shift = far_shift(own, x, base, section)[:, None]
                     least, most = own.reach[base]
-                    assert (low - shift >= least + margin - 1.0).all() or stops_early(own, x)
-                    assert (high - shift <= most - margin + 1.0).all()
+                    # Lanes that were not needed at first may take up some of the room for plinths.
+                    spare = margin - 1.0 if x.number in first else K / 2
+                    assert (low - shift >= least + spare).all() or stops_early(own, x)
+                    assert (high - shift <= most - spare).all()
 
 
 def test_awkward_is_what_leaves_the_furniture_and_what_stands_high(problem: Make) -> None:

@@ -13,13 +13,15 @@ from foldfab.folding import press, simulate
 from foldfab.folding.model import Chain
 from foldfab.folding.press import Motion
 from foldfab.folding.problem import Problem
-from foldfab.folding.repertoire import extend, repertoire
+from foldfab.folding.repertoire import repertoire
 from foldfab.folding.scene import Scene, open_scene, shown
 from foldfab.folding.simulate import clashes
 from foldfab.folding.surroundings import look
 from foldfab.folding.unit_fold import UnitFold
 from foldfab.folding.units import Unit
 from foldfab.recipe.model import Part
+
+from . import every
 
 Make = Callable[..., Problem]
 Folded = Callable[[Problem], tuple[Scene, list[tuple[Scene, UnitFold]]]]
@@ -49,9 +51,7 @@ def widened(chain: Chain, low: float, high: float) -> Chain:
 
 def whole(made: Problem, patch: str, hinges: int, towards: float, mechanism: str = "in-place") -> Chain:
     """The whole patch folding with its first panel towards one side of the world, +1 or -1."""
-    own = repertoire(made, made.unit_of[patch])
-    while own.later[patch]:
-        extend(made, own, patch)
+    own = every.whole(made, made.unit_of[patch])
     (found,) = (
         x.chain
         for x in own.plain[patch]

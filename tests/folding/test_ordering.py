@@ -187,12 +187,12 @@ def test_units_that_block_each_other_fold_as_one(
 
     def one_by_one(problem: Problem, scene: Scene, unit: Unit, *, in_place: bool = False) -> UnitFold | Refusal:
         asked.append((unit.patches, in_place))
-        return inner(problem, scene, unit, in_place=in_place)
+        return inner(problem, scene, unit, in_place=True) if in_place else Refusal(unit, "blocked")
 
     monkeypatch.setattr(ordering, "fold_seen", lambda _, __, own, *___, **____: Refusal(own.unit, "blocked"))
     monkeypatch.setattr(ordering, "fold_unit", one_by_one)
     found = greedy(made, open_scene(made), floors(made))
-    assert asked == [(("a", "b", "c", "d"), True)]
+    assert asked == [(("a", "b"), False), (("c", "d"), False), (("a", "b", "c", "d"), True)]
     (fold,) = found.folds
     assert not found.refusals and {c.mechanism for c in fold.chains} == {"in-place"}
     assert {c.patch for c in fold.chains} == {"a", "b", "c", "d"}
@@ -204,6 +204,7 @@ def test_a_single_unit_that_cannot_fold_is_not_merged_with_itself(
     made = problem("h_scaffold")
     refusal = Refusal(made.units[0], "blocked")
     monkeypatch.setattr(ordering, "fold_seen", lambda *_, **__: refusal)
+    monkeypatch.setattr(ordering, "fold_unit", lambda *_, **__: refusal)
     found = greedy(made, open_scene(made), floors(made))
     assert found.folds == () and found.refusals == (refusal,)
 

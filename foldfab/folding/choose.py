@@ -18,6 +18,7 @@ from collections.abc import Mapping
 import networkx as nx
 import numpy as np
 
+from foldfab.folding.eliminate import eliminated
 from foldfab.folding.exact import proven
 from foldfab.geometry.arrays import Array, Bools
 
@@ -25,6 +26,8 @@ EPSILON = 1e-12
 """A choice must be cheaper by more than this to be better."""
 LIMIT = 1_500
 """Branches after which CP-SAT takes over."""
+FEW = 8
+"""Groups beyond which elimination is tried first."""
 WIDEST = 100
 """Groups beyond which CP-SAT is asked at once."""
 
@@ -120,6 +123,10 @@ def _solved(
 ) -> dict[int, int] | None:
     groups = set(alive)
     own = [c for c in forbidden if {g for g, _ in c} <= groups]
+    if len(groups) > FEW and not own:
+        found = eliminated(alive, costs, table)
+        if found is not None:
+            return found
     search = _Search(costs, table, own)
     if len(groups) <= WIDEST:
         search.branch(dict(alive), {}, 0.0)

@@ -161,8 +161,15 @@ def _table(
                     if pieces is not None:
                         met[i, :, j] += pieces if p < q else pieces.T
             never[i, j] = not drag_alike(a, b) or not snap_alike(a, b)
-    held = np.einsum("ws,isjt,vt->iwjv", inside, met, inside, optimize=True) > 0.5
-    held |= never[:, None, :, None]
-    found = np.zeros((len(first) * count + 1, len(second) * count + 1), dtype=bool)
-    found[:-1, :-1] = held.reshape(len(first) * count, len(second) * count)
+    return _of_windows(met, never, inside, count)
+
+
+def _of_windows(met: Array, never: Bools, inside: Array, count: int) -> Bools:
+    """Which options conflict, from the pieces that meet (n, N_s, m, N_s) and the lanes that never go together (n, m)."""
+    shape = (met.shape[0] * count + 1, met.shape[2] * count + 1)
+    found = np.zeros(shape, dtype=bool)
+    if met.any() or never.any():
+        held = (np.tensordot(inside, met, axes=(1, 1)) @ inside.T).transpose(1, 0, 2, 3) > 0.5
+        held |= never[:, None, :, None]
+        found[:-1, :-1] = held.reshape(shape[0] - 1, shape[1] - 1)
     return found

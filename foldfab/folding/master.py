@@ -111,6 +111,8 @@ class Master:
             self.model.add_hint(self.place[name], k)
         self.solver.parameters.num_workers = 1
         self.solver.parameters.random_seed = 0
+        # The relaxation of conflicts between pairs is too weak to pay for itself.
+        self.solver.parameters.linearization_level = 0
         self.solver.parameters.max_deterministic_time = work
         status = self.solver.solve(self.model)
         spent = float(self.solver.response_proto.deterministic_time)

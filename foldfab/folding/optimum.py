@@ -17,6 +17,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from foldfab.folding import basic
+from foldfab.folding.congruent import repertoire
 from foldfab.folding.graph import Graph
 from foldfab.folding.master import Cut, Master, Order, Proposal
 from foldfab.folding.model import Chain
@@ -26,9 +27,9 @@ from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import Prospects, prospects, unhindered
 from foldfab.folding.realise import Clash, realised
 from foldfab.folding.reasons import reasons_of
-from foldfab.folding.repertoire import Lane, extend, repertoire
+from foldfab.folding.repertoire import Lane, extend
 from foldfab.folding.scene import Scene, shown
-from foldfab.folding.surroundings import Surroundings, depends_on, held_up, look
+from foldfab.folding.surroundings import Surroundings, depends_on, look
 from foldfab.folding.symmetry import Signature, is_less, signature, unlike
 from foldfab.folding.tree import between
 from foldfab.folding.unit_fold import UnitFold
@@ -279,11 +280,8 @@ def _unit_played(
 ) -> UnitFold | None:
     problem, own = group.problem, repertoire(group.problem, unit)
     around = look(problem, scene, own)
-    standing = held_up(problem, unit, around.limits)
-    if standing:
-        kept = frozenset(_place(options[standing], i) for i in range(len(options[standing].price) - 1))
-        lesson = _Lesson(((standing, kept),), ((unit.name, problem.unit_of[standing].name),))
-        group.lessons.append(lesson)
+    if around.standing:
+        group.lessons += [_must_wait(problem, unit, options, patch) for patch in sorted(around.standing)]
         return None
     chosen = {p: options[p][proposal.chosen[p]] for p in unit.patches}
     result = realised(problem, scene, unit, around, chosen)
@@ -298,6 +296,12 @@ def _unit_played(
     group.lessons += _lessons(group, scene, unit, around, options, proposal, done, result)
     group.lessons += _lessons_of_others(group, scene, unit, around, options, proposal, done, found)
     return None
+
+
+def _must_wait(problem: Problem, unit: Unit, options: Mapping[str, Options], patch: str) -> _Lesson:
+    """A unit that would bring bases together cannot fold before what stands between them, unless that is deleted."""
+    kept = frozenset(_place(options[patch], i) for i in range(len(options[patch].price) - 1))
+    return _Lesson(((patch, kept),), ((unit.name, problem.unit_of[patch].name),))
 
 
 def _lessons_of_others(

@@ -16,8 +16,8 @@ from dataclasses import dataclass, field
 import networkx as nx
 import numpy as np
 
+from foldfab.folding.congruent import repertoire
 from foldfab.folding.problem import Problem
-from foldfab.folding.repertoire import repertoire
 from foldfab.folding.scene import Scene, advanced
 from foldfab.folding.surroundings import Surroundings, depends_on, look
 from foldfab.folding.unit_fold import (
@@ -62,6 +62,8 @@ class _State:
     rest: dict[str, Unit]
     guess: dict[str, float] = field(default_factory=dict)
     """By remaining unit, what folding it now would count: exact, or at least not too much."""
+    waits: dict[str, set[str]] = field(default_factory=dict)
+    """By remaining unit, those that stand between its bases and have to fold first."""
     sees: dict[str, set[str]] = field(default_factory=dict)
     """By remaining unit, those whose folding may change that."""
     seen_by: dict[str, set[str]] = field(default_factory=dict)
@@ -124,6 +126,7 @@ def _look_again(state: _State, unit: Unit) -> None:
     own = repertoire(state.problem, unit)
     around = look(state.problem, state.scene, own)
     state.guess[unit.name] = _guessed(state, state.scene, unit, around)
+    state.waits[unit.name] = {state.problem.unit_of[p].name for p in around.standing}
     for name in state.sees.get(unit.name, ()):
         state.seen_by[name].discard(unit.name)
     state.sees[unit.name] = depends_on(state.problem, unit, around) | state.beside[unit.name]
@@ -205,7 +208,11 @@ def _hopes(state: _State) -> list[tuple[float, str]]:
     hopes = {name: 0.0 for name in state.rest if state.guess[name] < REFUSED}
     for name in state.rest:
         excess = state.guess[name] - state.floor[name].weight
-        for other in state.sees[name] if excess > 0 else ():
+        # What waits for several units is not helped by any one of them.
+        helpers = (
+            state.sees[name] if not state.waits[name] else state.waits[name] if len(state.waits[name]) == 1 else ()
+        )
+        for other in helpers if excess > 0 else ():
             if other in hopes and other != name:
                 hopes[other] -= excess
     return sorted((round(hope, DIGITS), name) for name, hope in hopes.items())

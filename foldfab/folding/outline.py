@@ -6,28 +6,26 @@ only by what a leaning patch adds. The bounding box, `stay_in_box`, holds for ev
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 from foldfab.folding.model import Chain, Thickness
-from foldfab.folding.problem import Problem, extent
+from foldfab.folding.problem import Problem
 from foldfab.geometry.arrays import Array
-from foldfab.geometry.boxes import Boxes
 
 EXPANSION = 0.1
 """In-place folding may stick out of the furniture's outline by this share of its size in that direction."""
 
 
-def sticks_out(problem: Problem, chain: Chain, swept: Iterable[Boxes]) -> bool:
+def leaves_outline(problem: Problem, chain: Chain, beside: tuple[float, float]) -> bool:
     """Whether a chain that folds in place leaves the outline of the open furniture along its own normal.
 
-    `swept` holds its boxes (frames, n) in each section of its fold.
+    `beside` is between which coordinates along that normal it stays, mm.
     """
     if chain.mechanism != "in-place":
         return False
     low, high = problem.extent_along(chain.across)
     slack = max(_skin(problem.thickness), EXPANSION * (high - low))
-    reaches = [extent(boxes, chain.across) for boxes in swept]
-    return min(r[0] for r in reaches) < low - slack or max(r[1] for r in reaches) > high + slack
+    return beside[0] < low - slack or beside[1] > high + slack
 
 
 def leaves_box(

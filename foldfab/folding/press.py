@@ -59,8 +59,11 @@ def ways(bases: tuple[str, ...], least: Mapping[tuple[str, str], float], clear: 
         level: by base, the height it stands above the lowest base, to which a base without anything below comes down.
     """
     way: dict[str, float] = {}
+    under: dict[str, list[str]] = {}
+    for a, b in least:
+        under.setdefault(b, []).append(a)
     for base in bases:
-        below = [way[a] + clear[a, b] - least[a, b] for a, b in least if b == base and a in way]
+        below = [way[a] + clear[a, base] - least[a, base] for a in under.get(base, ()) if a in way]
         way[base] = max(min(below) if below else level[base], 0.0)
     return way
 

@@ -48,6 +48,8 @@ class Problem:
     """Variants, without plinths, that a rehearsal of the whole fold has shown to be in the way."""
     repertoires: dict[Unit, Any] = field(default_factory=dict)
     """What the patches of each unit can do, by unit."""
+    poses: dict[object, Any] = field(default_factory=dict)
+    """The first unit of each kind, by what it looks like wherever it stands."""
     solved: dict[object, Any] = field(default_factory=dict)
     """Solutions of units, by all that they depend on."""
     hopeless: dict[Unit, str] = field(default_factory=dict)

@@ -66,6 +66,13 @@ def blocked_pieces(problem: Problem, own: Repertoire, around: Surroundings, many
     return room
 
 
+def in_the_way(problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane]) -> tuple[str, ...]:
+    """The owners of what some lanes meet around the unit, sorted."""
+    met: dict[int, set[int]] = {}
+    _look_at(problem, own, around, many, {}, met)
+    return tuple(sorted({_owner(around, box) for found in met.values() for box in found}))
+
+
 def unhindered(problem: Problem, own: Repertoire) -> Prospects:
     """What the patches of a unit could do if nothing stood around it."""
     steps = problem.options.shrink_steps

@@ -10,9 +10,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from foldfab.folding.basic import Variant
+from foldfab.folding.congruent import repertoire
 from foldfab.folding.ordering import after
 from foldfab.folding.problem import Problem
-from foldfab.folding.repertoire import repertoire
 from foldfab.folding.scene import Scene, shown
 from foldfab.folding.simulate import clashes
 from foldfab.folding.surroundings import look

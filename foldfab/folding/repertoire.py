@@ -17,9 +17,9 @@ from foldfab.folding.basic import Variant
 from foldfab.folding.mechanism import ends, peak, reach
 from foldfab.folding.model import Chain
 from foldfab.folding.nominal import FRAMES, Nominal, nominal
-from foldfab.folding.outline import sticks_out
+from foldfab.folding.outline import leaves_outline
 from foldfab.folding.press import follow_down, play_limit
-from foldfab.folding.problem import Problem, variants
+from foldfab.folding.problem import Problem, extent, variants
 from foldfab.folding.site import Site
 from foldfab.folding.space import Batch, joined, still
 from foldfab.folding.units import Unit
@@ -57,6 +57,8 @@ class Lane:
     """(FRAMES, 3) how it carries its far base where that is not straight down."""
     cuts: Array
     """(N_s + 1,) cutting points along its hinge direction, absolute coordinates, mm."""
+    beside: tuple[float, float]
+    """Between which coordinates along its normal it stays, mm."""
     is_out: bool
     """Whether it leaves the outline that in-place folding keeps to."""
     low: Array
@@ -92,19 +94,16 @@ class Repertoire:
     """By base of the unit, lower and upper corner (3,) of all that the unit sweeps, as seen from that base."""
 
 
-def repertoire(problem: Problem, unit: Unit) -> Repertoire:
-    """What the patches of a unit can do, made once."""
-    if unit not in problem.repertoires:
-        made = Repertoire(unit, nominal(problem, unit))
-        for patch in unit.patches:
-            made.later[patch] = sorted(variants(problem, unit, patch), key=lambda v: v.hinges)
-            made.plain[patch] = ()
-            while made.later[patch] and not made.plain[patch]:
-                extend(problem, made, patch)
-        made.reach.update(_reach(problem, made))
-        problem.repertoires[unit] = made
-    known: Repertoire = problem.repertoires[unit]
-    return known
+def made_from_scratch(problem: Problem, unit: Unit) -> Repertoire:
+    """What the patches of a unit can do at least cost."""
+    made = Repertoire(unit, nominal(problem, unit))
+    for patch in unit.patches:
+        made.later[patch] = sorted(variants(problem, unit, patch), key=lambda v: v.hinges)
+        made.plain[patch] = ()
+        while made.later[patch] and not made.plain[patch]:
+            extend(problem, made, patch)
+    made.reach.update(_reach(problem, made))
+    return made
 
 
 def extend(problem: Problem, own: Repertoire, patch: str) -> None:
@@ -194,9 +193,11 @@ def _made(problem: Problem, own: Repertoire, site: Site, variant: Variant) -> La
     cuts = middle - width / 2 + width * np.arange(steps + 1) / steps
     # Half the gap on either side belongs to the outermost pieces.
     cuts[0], cuts[-1] = min(cuts[0], middle + span[0]) - gap, max(cuts[-1], middle + span[1]) + gap
+    reaches = [extent(boxes, chain.across) for boxes in movers.values()]
+    beside = (min(r[0] for r in reaches), max(r[1] for r in reaches))
     found = Lane(
         len(own.lanes), site.patch.name, variant, chain, _span(movers), ends(chain), peak(chain)[0],
-        play_limit(chain, problem.thickness.gap), drag, cuts, sticks_out(problem, chain, movers.values()),
+        play_limit(chain, problem.thickness.gap), drag, cuts, beside, leaves_outline(problem, chain, beside),
         *_with_far_base(problem, chain, low, high),
     )  # fmt: skip
     own.lanes.append(found)
@@ -268,10 +269,10 @@ def _reach(problem: Problem, own: Repertoire) -> dict[str, tuple[Array, Array]]:
             if many is None:
                 continue
             far, drag = group[0].chain.far, group[0].drag
+            least, most = many.low.min(1), many.high.max(1)
             for base in own.unit.bases:
                 shift = drag if base == far and drag is not None else upright(own.nominal.down[base][section])
-                low = (many.low.min(1) - shift).min(0) - margin
-                high = (many.high.max(1) - shift).max(0) + margin
+                low, high = (least - shift).min(0) - margin, (most - shift).max(0) + margin
                 found[base] = (np.minimum(found[base][0], low), np.maximum(found[base][1], high))
     return found
 

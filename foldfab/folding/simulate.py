@@ -64,16 +64,29 @@ def _played(
     """The chains that fold in these frames, and those that are only carried along."""
     folding: list[tuple[Boxes, int]] = []
     carried_along: list[tuple[Boxes, Array, int]] = []
+    touched: set[str | None] = set()
+    rest: list[int] = []
     for i, chain in enumerate(chains):
         s = motion.fold[chain.patch][frames]
+        if s[0] == s[-1]:
+            rest.append(i)
+            continue
         near = motion.shift[chain.anchor][frames]
         far = motion.shift[chain.far][frames] if chain.far is not None else None
-        if s[0] == s[-1]:
-            parts = [moved(anatomy.resting_boxes(chain, thickness, float(s[0])), near[0])]
-            parts += [moved(anatomy.far_feet(chain, thickness), far[0])] if far is not None else []
+        folding.append((anatomy.swept_boxes(chain, thickness, s, near, far), i))
+        touched |= {chain.anchor, chain.far}
+    for i in rest:
+        chain = chains[i]
+        # What stands still far from everything that folds moves along with it or not at all.
+        if {chain.anchor, chain.far} & (touched - {None}):
+            near = motion.shift[chain.anchor][frames]
+            parts = [
+                moved(anatomy.resting_boxes(chain, thickness, float(motion.fold[chain.patch][frames[0]])), near[0])
+            ]
+            parts += (
+                [moved(anatomy.far_feet(chain, thickness), motion.shift[chain.far][frames[0]])] if chain.far else []
+            )
             carried_along.append((stacked(parts), near - near[0], i))
-        else:
-            folding.append((anatomy.swept_boxes(chain, thickness, s, near, far), i))
     moving = joined(folding, -SKIN) if folding else None
     if not carried_along:
         return moving, None

@@ -83,7 +83,7 @@ def _site(patch: Patch, importance: float, plates: dict[str, _Plate], thickness:
     start = plates[anchor].face.bottom if hangs else plates[anchor].face.top
     foot = patch.center + patch.up * (start - patch.center[2]) / patch.up[2]
     tip = patch.center[2] + abs(patch.up[2]) * patch.length / 2 * rise[2]
-    clear = plates[far].face.bottom - start if far is not None else abs(tip - start)
+    clear = plates[far].face.bottom - start if far is not None else float((tip - start) * rise[2])
     lean = float(np.arctan2(up @ across, up @ rise))
     half = patch.width / 2
     covered = tuple(_covered(plates[b], foot, along, thickness) if b else (-half, half) for b in (anchor, far))

@@ -8,12 +8,13 @@ import numpy as np
 
 from foldfab.errors import FoldingError
 from foldfab.folding import anatomy, basic
+from foldfab.folding.congruent import repertoire
+from foldfab.folding.improve import improved, weight
 from foldfab.folding.model import FoldSolution, Modification, Step, Thickness
 from foldfab.folding.optimum import NO_MORE, optimal
 from foldfab.folding.ordering import Ordered, floors, greedy, tight_floors, travel
 from foldfab.folding.problem import Problem
 from foldfab.folding.rehearsal import first_clash
-from foldfab.folding.repertoire import repertoire
 from foldfab.folding.scene import open_scene
 from foldfab.folding.site import sites, slab
 from foldfab.folding.soundness import disconnected, hangs_together, rigid_patches
@@ -66,7 +67,7 @@ def _solved(scaffold: Scaffold, thickness: Thickness) -> FoldSolution:
         met = first_clash(problem, open_scene(problem), ordered.folds)
         if met is None:
             return solution(problem, bound, ordered)
-        problem = replace(problem, banned=problem.banned | {met}, repertoires={}, solved={}, hopeless={})
+        problem = replace(problem, banned=problem.banned | {met}, repertoires={}, poses={}, solved={}, hopeless={})
     told = ", ".join(sorted({patch for patch, _ in problem.banned}))
     raise FoldingError(f"no folding solution found: {told} stay in the way of what folds before; try another thickness")
 
@@ -76,11 +77,11 @@ def _ordered(problem: Problem) -> tuple[Ordered, float]:
     scene, choices = open_scene(problem), floors(problem)
     ordered = greedy(problem, scene, choices)
     floor = {name: choice.weight for name, choice in choices.items()}
-    if ordered.refusals or _weight(ordered) - sum(floor.values()) > NO_MORE:
+    if ordered.refusals or weight(ordered) - sum(floor.values()) > NO_MORE:
         floor = tight_floors(problem, scene)
     bound = sum(floor.values())
-    if problem.options.ordering == "optimal" and (ordered.refusals or _weight(ordered) - bound > NO_MORE):
-        known = None if ordered.refusals else ordered
+    if problem.options.ordering == "optimal" and (ordered.refusals or weight(ordered) - bound > NO_MORE):
+        known = None if ordered.refusals else improved(problem, ordered, choices)
         found, bound = optimal(problem, scene, known, floor, problem.options.time_limit)
         ordered = found or ordered
     if ordered.refusals:
@@ -134,16 +135,12 @@ def solution(problem: Problem, least: float, ordered: Ordered) -> FoldSolution:
     changed.sort(key=lambda m: m.patch)
     cost = sum(m.cost for m in changed)
     # What was spent beyond the bound, preferences left aside, is what another solution could save at most.
-    spent = _weight(ordered) - least
+    spent = weight(ordered) - least
     bound = cost if spent < NO_MORE else max(cost - spent, 0.0)
     steps = _steps(problem, ordered.folds)
     return FoldSolution(
         problem.scaffold, problem.thickness, chains, tuple(changed), steps, cost, bound, _notes(problem, ordered)
     )
-
-
-def _weight(ordered: Ordered) -> float:
-    return float(sum(fold.weight for fold in ordered.folds))
 
 
 def _steps(problem: Problem, folds: tuple[UnitFold, ...]) -> tuple[Step, ...]:

@@ -7,7 +7,6 @@ grows with the number of solids, and everything else with the number of near one
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -48,6 +47,8 @@ class Surroundings:
     boxes: Boxes
     """(n,) where they are, in the unit's frame."""
     limits: Limits
+    standing: frozenset[str]
+    """What stands unfolded between two bases that a chain of the unit would bring together."""
     bounds: Mapping[str, tuple[Array, Array]]
     """By base of the unit, lower and upper corner (3,) of its cluster; empty unless the fold must stay in the box."""
     key: object
@@ -73,10 +74,10 @@ def look(problem: Problem, scene: Scene, own: Repertoire) -> Surroundings:
     owner = np.repeat(np.arange(len(solids)), [len(s.boxes) for s in solids])
     boxes = stacked([s.boxes for s in solids])
     boxes = Boxes(boxes.center + shift[picked][owner], boxes.axes, boxes.half)
-    limits = _limits(problem, scene, unit, pairs, shift, group)
+    limits, standing = _limits(problem, scene, unit, pairs, shift)
     whole = _bounds_by_cluster(unit, low, high, group, is_other) if problem.options.stay_in_box else {}
-    key = _key(problem, scene, unit, limits, solids, np.concatenate([low[picked], high[picked]]), offset)
-    return Surroundings(cluster, offset, solids, group[picked][owner], owner, boxes, limits, whole, key)
+    key = _key(problem, scene, unit, limits, standing, solids, np.concatenate([low[picked], high[picked]]), offset)
+    return Surroundings(cluster, offset, solids, group[picked][owner], owner, boxes, limits, standing, whole, key)
 
 
 def depends_on(problem: Problem, unit: Unit, around: Surroundings) -> set[str]:
@@ -86,20 +87,8 @@ def depends_on(problem: Problem, unit: Unit, around: Surroundings) -> set[str]:
         lead = tree.number[unit.bases[int(around.cluster[base])]]
         found |= {u.name for u in between(tree, base, lead)}
     owners = {s.owner for s in around.solids if s.state != "base"} | {owner for _, _, owner in around.limits.values()}
+    owners |= around.standing
     return found | {problem.unit_of[p].name for p in owners if p in problem.unit_of}
-
-
-def held_up(problem: Problem, unit: Unit, limits: Limits) -> str:
-    """The owner of what stands unfolded between two bases that a chain of the unit would bring together."""
-    for site in held(problem, unit):
-        assert site.far is not None
-        pair = (site.anchor, site.far)
-        least = problem.thickness.stack(2, has_upper_base=True)
-        # A base whose parts lie at several heights may reach below the one that carries the chain: no limit then.
-        _, raised, owner = limits.get(pair, (np.inf, np.inf, ""))
-        if raised < clear_height(problem, *pair) - least - NEARLY * problem.thickness.panel:
-            return owner
-    return ""
 
 
 def _near(own: Repertoire, low: Array, high: Array, group: Indices, is_other: Bools) -> Bools:
@@ -114,21 +103,26 @@ def _across(
     problem: Problem, unit: Unit, low: Array, high: Array, group: Indices, is_other: Bools
 ) -> list[tuple[int, int, Indices, Indices]]:
     """For each two clusters (lower, upper), solids of the one below solids of the other that may come down on them."""
-    found = []
-    for i, j in itertools.combinations(range(len(unit.bases)), 2):
-        clear = clear_height(problem, unit.bases[i], unit.bases[j])
-        a, b = np.nonzero(is_other & (group == i))[0], np.nonzero(is_other & (group == j))[0]
-        if not len(a) or not len(b):
-            continue
-        a, b = _facing(low, high, a, b, clear), b
-        b = _facing(low - [0, 0, clear], high, b, a, 0.0) if len(a) else b[:0]
-        if not len(a) or not len(b):
-            continue
-        p, q = near_pairs((low[a], high[a] + [0, 0, clear]), (low[b], high[b]))
-        inside = (low[a[p], :2] < high[b[q], :2]).all(-1) & (low[b[q], :2] < high[a[p], :2]).all(-1)
-        inside &= low[b[q], 2] - high[a[p], 2] > -1e-6
-        found.append((i, j, a[p[inside]], b[q[inside]]))
-    return found
+    faces = [problem.faces[b] for b in unit.bases]
+    clear = np.array([[above.bottom - below.top for above in faces] for below in faces])
+    a = b = np.nonzero(is_other)[0]
+    if len(unit.bases) == 2:
+        a, b = a[group[a] == 0], b[group[b] == 1]
+        a = _facing(low, high, a, b, clear[0, 1])
+        b = _facing(low - [0, 0, clear[0, 1]], high, b, a, 0.0)
+    if not len(a) or not len(b):
+        return []
+    p, q = near_pairs((low[a], high[a] + [0, 0, max(float(clear.max()), 0.0)]), (low[b], high[b]))
+    p, q = a[p], b[q]
+    inside = (low[p, :2] < high[q, :2]).all(-1) & (low[q, :2] < high[p, :2]).all(-1) & (group[p] < group[q])
+    room = low[q, 2] - high[p, 2]
+    inside &= (room > -1e-6) & (room <= clear[group[p], group[q]])
+    p, q = p[inside], q[inside]
+    code = group[p] * len(unit.bases) + group[q]
+    order = np.argsort(code, kind="stable")
+    cuts = np.nonzero(np.diff(code[order]))[0] + 1
+    parts = [part for part in np.split(order, cuts) if len(part)]
+    return [(int(group[p[k[0]]]), int(group[q[k[0]]]), p[k], q[k]) for k in parts]
 
 
 def _brushed(own: Repertoire, low: Array, high: Array, group: Indices, is_other: Bools) -> Indices:
@@ -145,47 +139,69 @@ def _brushed(own: Repertoire, low: Array, high: Array, group: Indices, is_other:
 
 def _facing(low: Array, high: Array, many: Indices, others: Indices, rise: float) -> Indices:
     """Those of `many` whose bounds, `rise` higher, reach into the bounds of all others together."""
+    if not len(others):
+        return many[:0]
     least, most = low[others].min(0), high[others].max(0)
     found: Indices = many[(low[many] <= most).all(1) & (high[many] + [0, 0, rise] >= least).all(1)]
     return found
 
 
 def _limits(
-    problem: Problem, scene: Scene, unit: Unit, pairs: list[tuple[int, int, Indices, Indices]], shift: Array,
-    group: Indices,
-) -> Limits:  # fmt: skip
-    """How far each upper cluster of the unit may come down towards each lower one."""
-    gap = problem.thickness.gap
-    found = dict.fromkeys(itertools.combinations(unit.bases, 2), (np.inf, np.inf, ""))
+    problem: Problem, scene: Scene, unit: Unit, pairs: list[tuple[int, int, Indices, Indices]], shift: Array
+) -> tuple[Limits, frozenset[str]]:
+    """How far each upper cluster of the unit may come down towards each lower one, and what stands in the way."""
+    gap, thick = problem.thickness.gap, problem.thickness
+    wanted = {(s.anchor, s.far) for s in held(problem, unit)}
+    found: dict[tuple[str, str], tuple[float, float, str]] = {}
+    blockers: set[str] = set()
     for i, j, p, q in pairs:
-        flat, raised, owner = np.inf, np.inf, ""
-        for a, b in zip(p, q, strict=True):
-            lower, upper = scene.solids[a], scene.solids[b]
-            room = _room(lower, shift[a], upper, shift[b]) - gap
-            standing = _standing(scene, unit, i, lower) or _standing(scene, unit, j, upper)
-            if not standing:
-                flat = min(flat, room)
-            elif room < raised:
-                raised, owner = room, standing
-        found[unit.bases[i], unit.bases[j]] = (float(flat), float(raised), owner)
-    return found
+        pair = (unit.bases[i], unit.bases[j])
+        upright = {
+            (k, base): _standing(scene, unit, k, int(base))
+            for k, ends in ((i, p), (j, q))
+            for base in set(scene.base[ends].tolist())
+        }
+        owners = [
+            _owner_standing(scene.solids[a], upright[i, scene.solids[a].base])
+            or _owner_standing(scene.solids[b], upright[j, scene.solids[b].base])
+            for a, b in zip(p.tolist(), q.tolist(), strict=True)
+        ]
+        room = _rooms(scene, shift, p, q) - gap
+        stands = np.array([bool(owner) for owner in owners])
+        flat = float(room[~stands].min(initial=np.inf))
+        raised = float(room[stands].min(initial=np.inf))
+        first = owners[int(np.argmin(np.where(stands, room, np.inf)))] if np.isfinite(raised) else ""
+        found[pair] = (flat, raised, first)
+        if pair in wanted:
+            least = clear_height(problem, *pair) - thick.stack(2, has_upper_base=True) - NEARLY * thick.panel
+            blockers |= {owners[k] for k in np.nonzero(stands & (room < least))[0]}
+    return found, frozenset(blockers)
 
 
-def _standing(scene: Scene, unit: Unit, group: int, solid: Solid) -> str:
-    """The patch that stands unfolded where a solid is one or is held up by one; nothing where it lies flat."""
-    if solid.state == "open":
-        return solid.owner
+def _standing(scene: Scene, unit: Unit, group: int, base: int) -> str:
+    """A patch that stands unfolded and holds up what moves with a base; nothing where that lies flat."""
     tree = scene.problem.tree
-    for other in between(tree, solid.base, tree.number[unit.bases[group]]):
+    for other in sorted(between(tree, base, tree.number[unit.bases[group]]), key=lambda u: u.name):
         if other.name not in scene.done:
             return other.patches[0]
     return ""
 
 
+def _owner_standing(solid: Solid, held_by: str) -> str:
+    return solid.owner if solid.state == "open" else held_by
+
+
+def _rooms(scene: Scene, shift: Array, p: Indices, q: Indices) -> Array:
+    """(n,) how far the upper solids `q` may come down on the lower ones `p`, mm; infinite where they pass each other."""
+    room: Array = scene.low[q, 2] + shift[q, 2] - scene.high[p, 2] - shift[p, 2]
+    for k, (a, b) in enumerate(zip(p.tolist(), q.tolist(), strict=True)):
+        if len(scene.solids[a].boxes) > 1 or len(scene.solids[b].boxes) > 1:
+            room[k] = _room(scene.solids[a], shift[a], scene.solids[b], shift[b])
+    return room
+
+
 def _room(lower: Solid, shift_a: Array, upper: Solid, shift_b: Array) -> float:
     """How far the upper solid may come down on the lower one, mm; infinite where they pass each other."""
-    if len(lower.boxes) == 1 and len(upper.boxes) == 1:
-        return float(upper.low[2] + shift_b[2] - lower.high[2] - shift_a[2])
     low_a, high_a = lower.corners
     low_b, high_b = upper.corners
     low_a, high_a, low_b, high_b = low_a + shift_a, high_a + shift_a, low_b + shift_b, high_b + shift_b
@@ -205,15 +221,16 @@ def _bounds_by_cluster(
 
 
 def _key(
-    problem: Problem, scene: Scene, unit: Unit, limits: Limits, solids: tuple[Solid, ...], corners: Array, offset: Array
-) -> object:
+    problem: Problem, scene: Scene, unit: Unit, limits: Limits, standing: frozenset[str], solids: tuple[Solid, ...],
+    corners: Array, offset: Array,
+) -> object:  # fmt: skip
     """Everything that the unit's fold can depend on."""
-    numbers = []
+    numbers: list[object] = [tuple(sorted(standing))]
     for pair, (flat, up, owner) in limits.items():
         clear = clear_height(problem, *pair)
         numbers.append((round(min(flat, clear), SAME), (round(up, SAME), owner) if up < clear else None))
     place = tuple(np.round(offset, SAME)) if problem.options.stay_in_box else None
-    shapes = tuple((s.owner, s.state, len(s.boxes)) for s in solids)
+    shapes = tuple((s.owner, s.state, len(s.corners[0])) for s in solids)
     bounds = (np.round(corners, SAME) + 0.0).tobytes()
     twins = {t.patch for p in unit.patches if (t := problem.twins.get(p))} & set(scene.chosen)
     alike = tuple((p, scene.chosen[p]) for p in sorted(twins))

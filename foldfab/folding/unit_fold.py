@@ -13,6 +13,7 @@ import numpy as np
 
 from foldfab.folding import basic
 from foldfab.folding.basic import Option, Variant
+from foldfab.folding.congruent import repertoire
 from foldfab.folding.graph import Graph
 from foldfab.folding.model import Chain
 from foldfab.folding.press import Motion
@@ -20,9 +21,9 @@ from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import blocked_pieces, prospects, unhindered
 from foldfab.folding.realise import Clash, realised
 from foldfab.folding.reasons import reason_against, reasons_of
-from foldfab.folding.repertoire import Lane, Repertoire, extend, repertoire
+from foldfab.folding.repertoire import Lane, Repertoire, extend
 from foldfab.folding.scene import Scene, alone
-from foldfab.folding.surroundings import Surroundings, held_up, look
+from foldfab.folding.surroundings import Surroundings, look
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Indices
 
@@ -123,7 +124,7 @@ def is_solved(problem: Problem, around: Surroundings) -> bool:
 
 def has_room(problem: Problem, own: Repertoire, around: Surroundings, choice: Choice) -> bool:
     """Whether nothing around is in the way of a choice, as far as the nominal fold tells."""
-    if held_up(problem, own.unit, around.limits) or len(choice.places) < len(own.unit.patches):
+    if around.standing or len(choice.places) < len(own.unit.patches):
         return False
     room = blocked_pieces(problem, own, around, [x for x, _ in choice.places.values()])
     return not any(room[x.number][a:b].any() for x, (a, b) in choice.places.values())
@@ -133,9 +134,8 @@ def _fold(
     problem: Problem, scene: Scene, own: Repertoire, around: Surroundings, *, in_place: bool
 ) -> UnitFold | Refusal:
     unit = own.unit
-    standing = held_up(problem, unit, around.limits)
-    if standing:
-        return Refusal(unit, f"{standing} stands in the way unfolded")
+    if around.standing:
+        return Refusal(unit, f"{', '.join(sorted(around.standing)[:3])} in the way still stands unfolded")
     found = prospects(problem, own, around, in_place=in_place)
     graph = Graph(problem, own, found, around.offset, chosen=scene.chosen)
     why: list[str] = []

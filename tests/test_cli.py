@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 import foldfab
-from foldfab import cli, report
+from foldfab import advice, cli, report
 from foldfab.errors import FoldingError, Problem, RecipeError
 from foldfab.fabrication.model import Finding
 from foldfab.validity.model import Verdict, Violation
@@ -31,6 +31,7 @@ class Pipeline(types.ModuleType):
         self.findings: tuple[Finding, ...] = ()
         self.rows: tuple[Any, ...] = ()
         self.violations: tuple[Violation, ...] = ()
+        self.helps: tuple[str, ...] = ()
         for name in (
             "load",
             "foldabilize",
@@ -75,6 +76,7 @@ class Pipeline(types.ModuleType):
 def pipeline(monkeypatch: pytest.MonkeyPatch) -> Pipeline:
     """The pipeline that the command line finds, and reports of one line."""
     fake = Pipeline()
+    monkeypatch.setattr(advice, "what_would_help", lambda recipe: fake.helps)
     monkeypatch.setitem(sys.modules, "foldfab.pipeline", fake)
     monkeypatch.setattr(foldfab, "pipeline", fake, raising=False)
     monkeypatch.setattr(report, "summary", lambda assembly, folder: f"summary of {folder}")
@@ -185,7 +187,28 @@ def test_refused(pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None
     assert cli.main(["fold", "bench"]) == 1
     assert capsys.readouterr() == ("", "foldfab: seat cannot fold\n")
     assert cli.main(["fold", "bench", "--json"]) == 1
-    assert json.loads(capsys.readouterr().out) == {"status": "refused", "reason": "seat cannot fold"}
+    assert json.loads(capsys.readouterr().out) == {"status": "refused", "reason": "seat cannot fold", "advice": []}
+
+
+def test_a_refusal_says_what_would_help(pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None:
+    pipeline.fails["foldabilize"] = FoldingError("seat cannot fold")
+    pipeline.helps = ("along -x", "with slanting allowed")
+    for command in ("fold", "print"):
+        assert cli.main([command, "bench"]) == 1
+        told = "foldfab: seat cannot fold\n  it would fold along -x, or with slanting allowed\n"
+        assert capsys.readouterr() == ("", told)
+    assert cli.main(["fold", "bench", "--json"]) == 1
+    assert json.loads(capsys.readouterr().out)["advice"] == ["along -x", "with slanting allowed"]
+
+
+def test_what_is_wrong_with_a_recipe_gets_no_advice(
+    pipeline: Pipeline, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Advice takes a solve for each change; it is for furniture that does not fold."""
+    monkeypatch.setattr(advice, "what_would_help", lambda recipe: pytest.fail("asked"))
+    pipeline.fails["foldabilize"] = WRONG
+    assert cli.main(["fold", "bench"]) == 2
+    assert "parts: is missing" in capsys.readouterr().err
 
 
 def test_alternatives(pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None:
@@ -197,7 +220,7 @@ def test_alternatives(pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) ->
     assert json.loads(capsys.readouterr().out) == {"alternatives": ["one", "two"]}
     pipeline.fails["alternatives"] = FoldingError("seat cannot fold")
     assert cli.main(["fold", "bench", "--alternatives", "2", "--json"]) == 1
-    assert json.loads(capsys.readouterr().out) == {"status": "refused", "reason": "seat cannot fold"}
+    assert json.loads(capsys.readouterr().out) == {"status": "refused", "reason": "seat cannot fold", "advice": []}
 
 
 @pytest.mark.parametrize("count", ["0", "21", "-1", "2.5", "many", "", "²"])

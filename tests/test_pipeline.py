@@ -14,6 +14,7 @@ from foldfab import cli, pipeline
 from foldfab.errors import AbstractionError, FabricationError, FoldingError
 from foldfab.fabrication.inspect import printed_extent
 from foldfab.fabrication.model import Assembly
+from foldfab.folding import alternatives as ranking
 from foldfab.folding import solve
 from foldfab.folding.model import FoldSolution
 from foldfab.scaffold.model import Scaffold
@@ -77,7 +78,7 @@ def test_alternatives_share_direction_and_scale(tmp_path: Path, monkeypatch: pyt
         seen.append((scaffold, count))
         return (solve.solve(scaffold),)
 
-    monkeypatch.setattr(solve, "alternatives", ranked, raising=False)
+    monkeypatch.setattr(ranking, "alternatives", ranked)
     recipe = loaded(tmp_path, direction="auto")
     best, (found,) = foldfab.foldabilize(recipe), pipeline.alternatives(recipe, 3)
     (scaffold, count) = seen[0]

@@ -168,4 +168,6 @@ def test_facts_of_alternatives_are_json() -> None:
 
 
 def test_facts_of_a_refusal() -> None:
-    assert report.refused_facts("no base") == {"status": "refused", "reason": "no base"}
+    assert report.refused_facts("no base") == {"status": "refused", "reason": "no base", "advice": []}
+    told = report.refused_facts("no base", ("along -x", "along -y"))
+    assert told == {"status": "refused", "reason": "no base", "advice": ["along -x", "along -y"]}

@@ -14,7 +14,7 @@ import pytest
 from foldfab.folding import anatomy
 from foldfab.folding.kinematics import configuration
 from foldfab.folding.model import Chain, FoldSolution, Thickness
-from foldfab.folding.ordering import after, greedy
+from foldfab.folding.ordering import after, floors, greedy
 from foldfab.folding.problem import Problem
 from foldfab.folding.scene import Scene, open_scene
 from foldfab.folding.solve import posed
@@ -46,7 +46,7 @@ def folded() -> Callable[..., tuple[Scene, list[tuple[Scene, UnitFold]]]]:
 
     def fold(problem: Problem) -> tuple[Scene, list[tuple[Scene, UnitFold]]]:
         scene = open_scene(problem)
-        found = greedy(problem, scene, dict.fromkeys((u.name for u in problem.units), 0.0))
+        found = greedy(problem, scene, floors(problem))
         assert not found.refusals
         steps = []
         for step in found.folds:

@@ -12,10 +12,12 @@ import pytest
 from foldfab.folding.basic import windows
 from foldfab.folding.conflict import compare, drag_alike, neighbours, snap_alike, table, windows_table
 from foldfab.folding.problem import Problem
-from foldfab.folding.repertoire import TOUCH, Lane, Repertoire, repertoire, upright
+from foldfab.folding.repertoire import TOUCH, Lane, Repertoire, upright
 from foldfab.geometry.arrays import Bools
 from foldfab.geometry.boxes import Boxes, grown, moved, overlaps
 from foldfab.recipe.model import Part
+
+from .every import whole
 
 Make = Callable[..., Problem]
 STEPS = 3
@@ -25,7 +27,7 @@ SHORT = 1e-6
 
 def only(made: Problem) -> Repertoire:
     (unit,) = made.units
-    return repertoire(made, unit)
+    return whole(made, unit)
 
 
 def compared(made: Problem) -> Repertoire:
@@ -189,7 +191,7 @@ def test_options_conflict_where_their_windows_hold_pieces_that_meet_or_lanes_nev
 
 def test_patches_far_apart_have_no_conflicts_when_they_fold_in_place(problem: Make) -> None:
     made = problem("box_with_table", slanting=False, max_hinges=1)
-    own = repertoire(made, made.unit_of["left"])
+    own = whole(made, made.unit_of["left"])
     compare(made, own, own.lanes)
     assert not own.pieces and neighbours(own, own.plain) == []
     inside = windows_table(windows(5), 5)
@@ -205,7 +207,7 @@ def test_patches_are_neighbours_that_may_drag_their_base_or_snap_differently(
 ) -> None:
     """Although none of their panels ever meet."""
     made = problem("box_with_table", slanting=slanting, max_hinges=max_hinges)
-    own = repertoire(made, made.unit_of["left"])
+    own = whole(made, made.unit_of["left"])
     compare(made, own, own.lanes)
     assert not own.pieces and neighbours(own, own.plain) == expected
 
@@ -248,7 +250,7 @@ def test_who_slants_never_folds_beside_who_comes_straight_down(problem: Make) ->
 
 def test_lanes_of_other_bases_drag_as_they_like(problem: Make) -> None:
     made = problem("shelf")
-    (below,), (above,) = ([repertoire(made, made.unit_of[p]).plain[p][0]] for p in ("a", "c"))
+    (below,), (above,) = ([whole(made, made.unit_of[p]).plain[p][0]] for p in ("a", "c"))
     assert below.drag is not None and drag_alike(below, replace(above, drag=None))
 
 

@@ -20,13 +20,15 @@ from foldfab.folding.solve import NO_MORE
 from foldfab.folding.surroundings import look
 from foldfab.recipe.model import Part, Pattern
 
+from .every import whole
+
 Make = Callable[..., Problem]
 Parts = tuple[Part, ...]
 HERE = np.zeros(3)
 
 
 def room_of(made: Problem, patch: str) -> Prospects:
-    return unhindered(made, repertoire(made, made.unit_of[patch]))
+    return unhindered(made, whole(made, made.unit_of[patch]))
 
 
 def of(made: Problem, patch: str) -> Options:
@@ -98,7 +100,7 @@ def test_windows_that_hold_a_blocked_piece_are_out(problem: Make) -> None:
     room = room_of(made, "leg")
     first = room.lanes["leg"][0]
     blocked = {**room.blocked, first.number: np.array([True, False, False, False, True])}
-    options = options_of(made, Prospects(room.lanes, blocked, {}), HERE)["leg"]
+    options = options_of(made, Prospects(room.lanes, blocked, {}, {}), HERE)["leg"]
     count = len(options.windows)
     allowed = {options.windows[i] for i in possible(options) if i < count}
     assert allowed == {(a, b) for a in range(1, 4) for b in range(a + 1, 5)}

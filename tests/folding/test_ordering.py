@@ -15,7 +15,7 @@ from foldfab.folding.problem import Problem
 from foldfab.folding.repertoire import Repertoire
 from foldfab.folding.scene import Scene, open_scene
 from foldfab.folding.solve import NO_MORE
-from foldfab.folding.unit_fold import Refusal, UnitFold, fold_unit
+from foldfab.folding.unit_fold import Choice, Refusal, UnitFold, fold_unit
 from foldfab.folding.units import Unit
 from foldfab.recipe.model import Part
 
@@ -135,14 +135,14 @@ def test_no_unit_counts_less_than_its_floors(problem: Callable[..., Problem], na
     assert set(low) == set(tight) == {fold.unit.name for fold in found.folds}
     for fold in found.folds:
         name = fold.unit.name
-        assert 0 <= low[name] <= tight[name] + NO_MORE and tight[name] <= fold.weight + NO_MORE
+        assert 0 <= low[name].weight <= tight[name] + NO_MORE and tight[name] <= fold.weight + NO_MORE
 
 
 @pytest.mark.parametrize("name", ["box_with_table", "shelf", "chair", "tower"])
 def test_floors_only_save_time(problem: Callable[..., Problem], name: str) -> None:
     """Without them every unit is looked at ahead, and the same order comes out."""
     orders = []
-    for bound in (floors, lambda made: {u.name: -1.0 for u in made.units}):
+    for bound in (floors, lambda made: {u.name: Choice(-1.0, {}) for u in made.units}):
         made = problem(name, slanting=False)
         found = greedy(made, open_scene(made), bound(made))
         orders.append([(fold.unit.name, fold.chosen) for fold in found.folds])
@@ -187,12 +187,12 @@ def test_units_that_block_each_other_fold_as_one(
 
     def one_by_one(problem: Problem, scene: Scene, unit: Unit, *, in_place: bool = False) -> UnitFold | Refusal:
         asked.append((unit.patches, in_place))
-        return inner(problem, scene, unit, in_place=in_place)
+        return inner(problem, scene, unit, in_place=True) if in_place else Refusal(unit, "blocked")
 
     monkeypatch.setattr(ordering, "fold_seen", lambda _, __, own, *___, **____: Refusal(own.unit, "blocked"))
     monkeypatch.setattr(ordering, "fold_unit", one_by_one)
     found = greedy(made, open_scene(made), floors(made))
-    assert asked == [(("a", "b", "c", "d"), True)]
+    assert asked == [(("a", "b"), False), (("c", "d"), False), (("a", "b", "c", "d"), True)]
     (fold,) = found.folds
     assert not found.refusals and {c.mechanism for c in fold.chains} == {"in-place"}
     assert {c.patch for c in fold.chains} == {"a", "b", "c", "d"}
@@ -204,6 +204,7 @@ def test_a_single_unit_that_cannot_fold_is_not_merged_with_itself(
     made = problem("h_scaffold")
     refusal = Refusal(made.units[0], "blocked")
     monkeypatch.setattr(ordering, "fold_seen", lambda *_, **__: refusal)
+    monkeypatch.setattr(ordering, "fold_unit", lambda *_, **__: refusal)
     found = greedy(made, open_scene(made), floors(made))
     assert found.folds == () and found.refusals == (refusal,)
 

@@ -17,12 +17,14 @@ from foldfab.folding.unit_fold import UnitFold, fold_unit
 from foldfab.geometry.boxes import Boxes, grown, moved, overlaps
 from foldfab.recipe.model import Part
 
+from .every import whole
+
 Make = Callable[..., Problem]
 Folded = Callable[[Problem], tuple[Scene, list[tuple[Scene, UnitFold]]]]
 
 
 def seen(made: Problem, scene: Scene, patch: str) -> tuple[Repertoire, Surroundings]:
-    own = repertoire(made, made.unit_of[patch])
+    own = whole(made, made.unit_of[patch])
     return own, look(made, scene, own)
 
 

@@ -31,13 +31,16 @@ from foldfab.folding.repertoire import (
 from foldfab.geometry.boxes import bounds
 from foldfab.recipe.model import Part
 
+from .every import whole
+
 Make = Callable[..., Problem]
 IN_PLACE = Variant("in-place", 1, "r")
+K = 4.0
 
 
 def only(made: Problem) -> Repertoire:
     (unit,) = made.units
-    return repertoire(made, unit)
+    return whole(made, unit)
 
 
 def lanes_of(own: Repertoire, patch: str, mechanism: str, hinges: int) -> list[Lane]:
@@ -80,7 +83,7 @@ def test_a_lane_starts_as_high_as_it_stood_open_and_ends_flat(problem: Make, nam
     """Accordions are looked at from where their snap is over: until then their bases stand still."""
     made = problem(name)
     for unit in made.units:
-        own = repertoire(made, unit)
+        own = whole(made, unit)
         for x in own.lanes:
             start, end = own.movers[x.number][x.active.start], own.movers[x.number][x.active.stop - 1]
             first = follow_down(x.chain, np.zeros(1)) if x.snap > 0 else np.zeros(1)
@@ -169,15 +172,18 @@ def test_all_that_is_swept_is_in_reach_as_seen_from_every_base(problem: Make, na
     made = problem(name)
     margin = ROOM_THICKNESSES * 4.3
     for unit in made.units:
-        own = repertoire(made, unit)
+        first = {x.number for x in repertoire(made, unit).lanes}
+        own = whole(made, unit)
         for x in own.lanes:
             for section, boxes in own.movers[x.number].items():
                 low, high = bounds(boxes)
                 for base in unit.bases:
                     shift = far_shift(own, x, base, section)[:, None]
                     least, most = own.reach[base]
-                    assert (low - shift >= least + margin - 1.0).all() or stops_early(own, x)
-                    assert (high - shift <= most - margin + 1.0).all()
+                    # Lanes that were not needed at first may take up some of the room for plinths.
+                    spare = margin - 1.0 if x.number in first else K / 2
+                    assert (low - shift >= least + spare).all() or stops_early(own, x)
+                    assert (high - shift <= most - spare).all()
 
 
 def test_awkward_is_what_leaves_the_furniture_and_what_stands_high(problem: Make) -> None:

@@ -103,13 +103,13 @@ def test_after_a_fold_bases_stand_where_it_took_them(table_in_box: Problem, tabl
     now = after(table_in_box, scene, table_fold)
     assert now.moved("top") == pytest.approx(down)
     assert not now.moved("ground").any() and not now.moved("ceiling").any()
-    again = advanced(now, table_in_box.unit_of["left"], (), np.ones((3, 3)))
+    again = advanced(now, table_in_box.unit_of["left"], {}, (), np.ones((3, 3)))
     assert again.moved("top") == pytest.approx(down + 1) and again.moved("ground") == pytest.approx(np.ones(3))
 
 
 def test_patches_without_a_chain_are_gone(table_in_box: Problem, table_fold: UnitFold) -> None:
     kept = [c for c in table_fold.chains if c.patch == "leg-left"]
-    now = advanced(open_scene(table_in_box), table_fold.unit, kept, np.zeros((3, 3)))
+    now = advanced(open_scene(table_in_box), table_fold.unit, table_fold.chosen, kept, np.zeros((3, 3)))
     assert_consistent(now)
     assert now.gone == {"leg-right"} and now.places["leg-right"] == ()
     assert "leg-right" not in present(now) and "leg-left" in present(now)

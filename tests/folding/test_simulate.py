@@ -21,6 +21,8 @@ from foldfab.folding.unit_fold import UnitFold
 from foldfab.folding.units import Unit
 from foldfab.recipe.model import Part
 
+from . import every
+
 Make = Callable[..., Problem]
 Folded = Callable[[Problem], tuple[Scene, list[tuple[Scene, UnitFold]]]]
 NAMES = (
@@ -49,7 +51,7 @@ def widened(chain: Chain, low: float, high: float) -> Chain:
 
 def whole(made: Problem, patch: str, hinges: int, towards: float, mechanism: str = "in-place") -> Chain:
     """The whole patch folding with its first panel towards one side of the world, +1 or -1."""
-    own = repertoire(made, made.unit_of[patch])
+    own = every.whole(made, made.unit_of[patch])
     (found,) = (
         x.chain
         for x in own.plain[patch]

@@ -114,10 +114,10 @@ def test_an_unfolded_table_keeps_the_ceiling_up(in_box: Problem) -> None:
     unit = in_box.unit_of["left"]
     around = seen(in_box, scene, "left")
     flat, raised, owner = around.limits["ground", "ceiling"]
-    # From under the ceiling to what stands open: the table's legs reach its top from below.
-    assert flat == pytest.approx(102 - 46 - 0.3)
+    # The table's top is as little flat as the legs that hold it up: nothing but the ground lies there.
+    assert flat == pytest.approx(100 - 0.3)
     assert held_up(in_box, unit, around.limits) == owner and owner in ("leg-left", "leg-right")
-    assert raised == pytest.approx(102 - 41.7 - 0.3)
+    assert raised == pytest.approx(102 - 46 - 0.3)
 
 
 def test_a_folded_table_lets_the_ceiling_down_onto_it(in_box: Problem) -> None:

@@ -10,11 +10,11 @@ import pytest
 
 from foldfab.errors import FoldingError
 from foldfab.folding.basic import cost
+from foldfab.folding.congruent import repertoire
 from foldfab.folding.model import FoldSolution
 from foldfab.folding.options import DELETION, Options, options_of
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import Prospects, prospects, unhindered
-from foldfab.folding.repertoire import repertoire
 from foldfab.folding.scene import open_scene
 from foldfab.folding.solve import NO_MORE
 from foldfab.folding.surroundings import look
@@ -72,7 +72,7 @@ def test_deletion_counts_many_times_its_price_in_the_search(problem: Make) -> No
     made = problem("three_walls")
     options, share = of(made, "left"), made.sites["left"].importance
     assert options.price[-1] == pytest.approx(0.5 * share)
-    assert options.weight[-1] == pytest.approx(DELETION * share)
+    assert options.weight[-1] == pytest.approx(DELETION + 0.5 * share)
     assert options.weight[-1] > options.weight[possible(options)[:-1]].max()
 
 

@@ -10,6 +10,7 @@ import pytest
 
 from foldfab.folding import anatomy
 from foldfab.folding.basic import Variant
+from foldfab.folding.congruent import repertoire
 from foldfab.folding.mechanism import reach
 from foldfab.folding.nominal import FRAMES
 from foldfab.folding.press import follow_down
@@ -22,7 +23,6 @@ from foldfab.folding.repertoire import (
     cuts_of,
     far_shift,
     lane,
-    repertoire,
     resting,
     stops_early,
     swept,
@@ -141,8 +141,9 @@ def test_a_lane_rests_open_before_it_folds_and_folded_on_its_base_after(
     (lower, *_), (upper, *_) = own.plain["lower"], own.plain["upper"]
     before = resting(made, own, [lower], 0)
     assert before is not None and resting(made, own, [upper], 0) is None
-    first = own.movers[lower.number][1]
-    assert before.boxes.center == pytest.approx(np.broadcast_to(first.center[:1], before.boxes.center.shape))
+    still = np.zeros((1, 3))
+    standing = anatomy.swept_boxes(lower.chain, made.thickness, np.zeros(1), still, still)
+    assert before.boxes.center == pytest.approx(np.broadcast_to(standing.center, before.boxes.center.shape))
     behind = resting(made, own, [upper], 1)
     assert behind is not None and resting(made, own, [lower], 1) is None
     last, down = own.movers[upper.number][0], upright(own.nominal.down["middle"][1])

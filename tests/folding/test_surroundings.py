@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from foldfab.folding.congruent import repertoire
 from foldfab.folding.ordering import after
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import prospects
-from foldfab.folding.repertoire import repertoire
 from foldfab.folding.scene import Scene, alone, open_scene
-from foldfab.folding.surroundings import Surroundings, depends_on, held_up, look
+from foldfab.folding.surroundings import Surroundings, depends_on, look
 from foldfab.folding.unit_fold import UnitFold, fold_unit
 from foldfab.recipe.model import Part
 
@@ -111,12 +111,11 @@ def test_what_a_unit_does_not_see_is_not_in_its_way(problem: Make, folded: Folde
 
 def test_an_unfolded_table_keeps_the_ceiling_up(in_box: Problem) -> None:
     scene = open_scene(in_box)
-    unit = in_box.unit_of["left"]
     around = seen(in_box, scene, "left")
     flat, raised, owner = around.limits["ground", "ceiling"]
     # The table's top is as little flat as the legs that hold it up: nothing but the ground lies there.
     assert flat == pytest.approx(100 - 0.3)
-    assert held_up(in_box, unit, around.limits) == owner and owner in ("leg-left", "leg-right")
+    assert around.standing == {"leg-left", "leg-right"} and owner in around.standing
     assert raised == pytest.approx(102 - 46 - 0.3)
 
 
@@ -126,11 +125,10 @@ def test_a_folded_table_lets_the_ceiling_down_onto_it(in_box: Problem) -> None:
     flat, raised, _ = around.limits["ground", "ceiling"]
     height = 46 + scene.moved("top")[2]
     assert flat == pytest.approx(102 - height - 0.3) and raised == np.inf
-    assert held_up(in_box, in_box.unit_of["left"], around.limits) == ""
+    assert not around.standing
 
 
 def test_alone_a_unit_has_no_limit_but_its_own_plates(in_box: Problem) -> None:
-    unit = in_box.unit_of["left"]
     around = seen(in_box, alone(open_scene(in_box), unit), "left")
     assert owners(around) == {("ground", "base"), ("ceiling", "base")}
     flat, raised, owner = around.limits["ground", "ceiling"]
@@ -201,7 +199,7 @@ def test_what_may_come_down_on_something_is_seen_however_far_it_is_from_the_patc
     made = problem(parts, slanting=False)
     around = seen(made, open_scene(made), "wall")
     assert ("flap", "open") in owners(around)
-    assert held_up(made, made.unit_of["wall"], around.limits) == "flap"
+    assert around.standing == {"flap"}
 
 
 def test_a_unit_depends_on_what_carries_a_board_near_it(

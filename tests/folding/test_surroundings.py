@@ -129,7 +129,7 @@ def test_a_folded_table_lets_the_ceiling_down_onto_it(in_box: Problem) -> None:
 
 
 def test_alone_a_unit_has_no_limit_but_its_own_plates(in_box: Problem) -> None:
-    around = seen(in_box, alone(open_scene(in_box), unit), "left")
+    around = seen(in_box, alone(open_scene(in_box), in_box.unit_of["left"]), "left")
     assert owners(around) == {("ground", "base"), ("ceiling", "base")}
     flat, raised, owner = around.limits["ground", "ceiling"]
     assert (flat, raised, owner) == (pytest.approx(100.0 - 0.3), np.inf, "")

@@ -15,6 +15,7 @@ import numpy as np
 
 from foldfab.folding import basic
 from foldfab.folding.basic import Option
+from foldfab.folding.congruent import repertoire
 from foldfab.folding.graph import Graph
 from foldfab.folding.options import Options
 from foldfab.folding.ordering import after
@@ -22,9 +23,9 @@ from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import prospects, unhindered
 from foldfab.folding.realise import Clash, realised
 from foldfab.folding.rehearsal import first_clash
-from foldfab.folding.repertoire import Lane, repertoire
-from foldfab.folding.scene import Scene, open_scene, shown
-from foldfab.folding.surroundings import held_up, look
+from foldfab.folding.repertoire import Lane
+from foldfab.folding.scene import open_scene, shown
+from foldfab.folding.surroundings import look
 from foldfab.folding.unit_fold import UnitFold
 from foldfab.folding.units import Unit
 
@@ -83,7 +84,9 @@ def _of_unit(
         options: Options = graph.options[g]
         for i in range(len(options.price)):
             heavier = weight + float(options.weight[i])
-            if heavier < most and not any((h, g) in graph.tables and graph.tables[h, g][picked[h], i] for h in range(g)):
+            if heavier < most and not any(
+                (h, g) in graph.tables and graph.tables[h, g][picked[h], i] for h in range(g)
+            ):
                 yield from extended((*picked, i), heavier)
 
     yield from extended((), 0.0)
@@ -100,7 +103,7 @@ def _holds(
     for unit in order:
         own = repertoire(problem, unit)
         around = look(problem, scene, own)
-        if held_up(problem, unit, around.limits):
+        if around.standing:
             return False
         result = realised(problem, scene, unit, around, {p: chosen[p] for p in unit.patches})
         if isinstance(result, Clash):

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from foldfab.folding.congruent import repertoire
 from foldfab.folding.problem import Problem
-from foldfab.folding.repertoire import Repertoire, extend, repertoire
+from foldfab.folding.repertoire import Repertoire, extend
 from foldfab.folding.units import Unit
 
 

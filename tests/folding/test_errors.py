@@ -25,7 +25,9 @@ def test_furniture_of_boards_only_has_nothing_to_fold(solution: Make, furniture:
 
 
 def test_patches_too_short_for_their_hinges_are_named_with_their_height(solution: Make) -> None:
-    with pytest.raises(FoldingError, match=r"leg \(54.0 mm high\) cannot carry hinges.*; print larger or with plates thinner"):
+    with pytest.raises(
+        FoldingError, match=r"leg \(54.0 mm high\) cannot carry hinges.*; print larger or with plates thinner"
+    ):
         solution("h_scaffold", thickness=30.0)
 
 

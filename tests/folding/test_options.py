@@ -10,11 +10,11 @@ import pytest
 
 from foldfab.errors import FoldingError
 from foldfab.folding.basic import cost
+from foldfab.folding.congruent import repertoire
 from foldfab.folding.model import FoldSolution
 from foldfab.folding.options import DELETION, Options, options_of
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import Prospects, prospects, unhindered
-from foldfab.folding.repertoire import repertoire
 from foldfab.folding.scene import open_scene
 from foldfab.folding.solve import NO_MORE
 from foldfab.folding.surroundings import look

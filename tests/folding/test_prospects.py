@@ -7,10 +7,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from foldfab.folding.congruent import repertoire
 from foldfab.folding.ordering import after
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import THE_BOX, Prospects, prospects, unhindered
-from foldfab.folding.repertoire import TOUCH, Lane, Repertoire, far_shift, repertoire
+from foldfab.folding.repertoire import TOUCH, Lane, Repertoire, far_shift
 from foldfab.folding.scene import Scene, open_scene
 from foldfab.folding.surroundings import Surroundings, look
 from foldfab.folding.unit_fold import UnitFold, fold_unit

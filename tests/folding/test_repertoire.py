@@ -10,6 +10,7 @@ import pytest
 
 from foldfab.folding import anatomy
 from foldfab.folding.basic import Variant
+from foldfab.folding.congruent import repertoire
 from foldfab.folding.mechanism import reach
 from foldfab.folding.nominal import FRAMES
 from foldfab.folding.press import follow_down
@@ -22,7 +23,6 @@ from foldfab.folding.repertoire import (
     cuts_of,
     far_shift,
     lane,
-    repertoire,
     resting,
     stops_early,
     swept,
@@ -74,7 +74,7 @@ def test_a_variant_whose_panels_would_be_too_short_has_no_lane(problem: Make) ->
 
 def test_what_was_banned_is_no_variant(problem: Make) -> None:
     made = problem("h_scaffold")
-    own = only(replace(made, banned=frozenset({("leg", IN_PLACE)}), repertoires={}))
+    own = only(replace(made, banned=frozenset({("leg", IN_PLACE)}), repertoires={}, poses={}))
     assert IN_PLACE not in {x.variant for x in own.plain["leg"]} and len(own.lanes) == 5
 
 

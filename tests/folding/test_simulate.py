@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from foldfab.folding import press, simulate
+from foldfab.folding.congruent import repertoire
 from foldfab.folding.model import Chain
 from foldfab.folding.press import Motion
 from foldfab.folding.problem import Problem
-from foldfab.folding.repertoire import repertoire
 from foldfab.folding.scene import Scene, open_scene, shown
 from foldfab.folding.simulate import clashes
 from foldfab.folding.surroundings import look

@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from foldfab.folding.congruent import repertoire
 from foldfab.folding.ordering import after
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import prospects
-from foldfab.folding.repertoire import repertoire
 from foldfab.folding.scene import Scene, alone, open_scene
-from foldfab.folding.surroundings import Surroundings, depends_on, held_up, look
+from foldfab.folding.surroundings import Surroundings, depends_on, look
 from foldfab.folding.unit_fold import UnitFold, fold_unit
 from foldfab.recipe.model import Part
 
@@ -116,7 +116,7 @@ def test_an_unfolded_table_keeps_the_ceiling_up(in_box: Problem) -> None:
     flat, raised, owner = around.limits["ground", "ceiling"]
     # The table's top is as little flat as the legs that hold it up: nothing but the ground lies there.
     assert flat == pytest.approx(100 - 0.3)
-    assert held_up(in_box, unit, around.limits) == owner and owner in ("leg-left", "leg-right")
+    assert owner in around.standing <= {"leg-left", "leg-right"}
     assert raised == pytest.approx(102 - 46 - 0.3)
 
 
@@ -126,7 +126,7 @@ def test_a_folded_table_lets_the_ceiling_down_onto_it(in_box: Problem) -> None:
     flat, raised, _ = around.limits["ground", "ceiling"]
     height = 46 + scene.moved("top")[2]
     assert flat == pytest.approx(102 - height - 0.3) and raised == np.inf
-    assert held_up(in_box, in_box.unit_of["left"], around.limits) == ""
+    assert not around.standing
 
 
 def test_alone_a_unit_has_no_limit_but_its_own_plates(in_box: Problem) -> None:
@@ -201,7 +201,7 @@ def test_what_may_come_down_on_something_is_seen_however_far_it_is_from_the_patc
     made = problem(parts, slanting=False)
     around = seen(made, open_scene(made), "wall")
     assert ("flap", "open") in owners(around)
-    assert held_up(made, made.unit_of["wall"], around.limits) == "flap"
+    assert around.standing == {"flap"}
 
 
 def test_a_unit_depends_on_what_carries_a_board_near_it(

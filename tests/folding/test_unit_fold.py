@@ -11,15 +11,15 @@ import pytest
 
 from foldfab.folding import unit_fold
 from foldfab.folding.conflict import drag_alike
+from foldfab.folding.congruent import repertoire
 from foldfab.folding.options import options_of
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import prospects
 from foldfab.folding.realise import Clash, realised
-from foldfab.folding.repertoire import repertoire
 from foldfab.folding.scene import Scene, alone, open_scene
 from foldfab.folding.solve import NO_MORE
 from foldfab.folding.surroundings import look
-from foldfab.folding.unit_fold import Refusal, UnitFold, fold_seen, fold_unit, has_room, least_choice
+from foldfab.folding.unit_fold import Refusal, UnitFold, fold_seen, fold_unit, least_choice
 
 from .every import whole
 

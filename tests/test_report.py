@@ -108,7 +108,7 @@ def test_table_is_in_folding_order() -> None:
     lines = report.fold_table(solution(), 12.3).splitlines()
     assert lines[0] == (
         "chair folds along -x: 2 units, 3 foldable patches, cost 0.1500, no less than 0.1000 (gap 33.3 %), "
-        "ordering greedy, solved in 12 ms"
+        "ordering optimal, solved in 12 ms"
     )
     assert [line.split()[:2] for line in lines[3:6]] == [["1", "seat"], ["1", "bar"], ["2", "back"]]
     assert lines[-1] == "note: a note"
@@ -119,7 +119,7 @@ def test_facts_are_json() -> None:
     assert (facts["status"], facts["units"], facts["foldable_patches"]) == ("folded", 2, 3)
     assert (facts["cost"], facts["lower_bound"], facts["milliseconds"]) == (0.15, 0.1, 12.346)
     assert facts["modifications"][1]["patch"] == "bar"
-    assert (facts["ordering"], facts["gap"], facts["proven"]) == ("greedy", pytest.approx(1 / 3), False)
+    assert (facts["ordering"], facts["gap"], facts["proven"]) == ("optimal", pytest.approx(1 / 3), False)
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from __future__ import annotations
 from foldfab.folding.model import FoldSolution, Thickness
 from foldfab.folding.optimum import other
 from foldfab.folding.options import DELETION
-from foldfab.folding.ordering import tight_floors
+from foldfab.folding.ordering import floors
 from foldfab.folding.problem import Problem
 from foldfab.folding.rehearsal import first_clash
 from foldfab.folding.scene import open_scene
@@ -45,7 +45,7 @@ def alternatives(scaffold: Scaffold, count: int) -> tuple[FoldSolution, ...]:
 def _following(problem: Problem, last: FoldSolution, excluded: list[dict[str, Signature]]) -> FoldSolution | None:
     """The best solution that is not excluded yet; it is excluded from then on."""
     scene, step, tries = open_scene(problem), FIRST_STEP, 0
-    floor = tight_floors(problem, scene)
+    floor = {name: choice.weight for name, choice in floors(problem).items()}
     while tries < STEPS:
         most = _weight(last) + step
         ordered, bound = other(problem, scene, floor, tuple(excluded), most, problem.options.time_limit)
@@ -70,4 +70,4 @@ def _signatures(problem: Problem, found: FoldSolution) -> dict[str, Signature]:
 
 
 def _weight(found: FoldSolution) -> float:
-    return sum(DELETION * m.importance if m.is_deleted else m.cost for m in found.modifications)
+    return sum(m.cost + DELETION * m.is_deleted for m in found.modifications)

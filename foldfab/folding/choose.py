@@ -42,6 +42,7 @@ def cheapest(
     costs: list[Array],
     conflicts: Mapping[tuple[int, int], Bools],
     forbidden: frozenset[Combination] = frozenset(),
+    gaps: list[float] | None = None,
 ) -> tuple[int, ...] | None:
     """The option of each group in the cheapest conflict-free choice, or None where there is none.
 
@@ -49,6 +50,7 @@ def cheapest(
         costs: for each group, the costs (n,) of its options; infinite where an option is out of the question.
         conflicts: by groups (g, h) with g < h, which options (n_g, n_h) exclude each other; a missing pair has none.
         forbidden: combinations of (group, option) that must not all be taken together.
+        gaps: gets by how much the choice may be dearer than the cheapest one, where the work did not suffice to tell.
     """
     table = _by_group(len(costs), conflicts)
     held = _held(len(costs), forbidden)
@@ -59,7 +61,9 @@ def cheapest(
             price = np.where(alive[groups[0]], costs[groups[0]], np.inf)
             best: dict[int, int] | None = {groups[0]: int(np.argmin(price))} if np.isfinite(price).any() else None
         else:
-            best = _solved({g: alive[g] for g in groups}, costs, table, forbidden)
+            best, gap = _solved({g: alive[g] for g in groups}, costs, table, forbidden)
+            if gaps is not None and gap > 0:
+                gaps.append(gap)
         if best is None:
             return None
         taken.update(best)
@@ -120,18 +124,18 @@ def _islands(alive: list[Bools], table: Table, forbidden: frozenset[Combination]
 
 def _solved(
     alive: Mapping[int, Bools], costs: list[Array], table: Table, forbidden: frozenset[Combination]
-) -> dict[int, int] | None:
+) -> tuple[dict[int, int] | None, float]:
     groups = set(alive)
     own = [c for c in forbidden if {g for g, _ in c} <= groups]
     if len(groups) > FEW and not own:
         found = eliminated(alive, costs, table)
         if found is not None:
-            return found
+            return found, 0.0
     search = _Search(costs, table, own)
     if len(groups) <= WIDEST:
         search.branch(dict(alive), {}, 0.0)
         if search.left >= 0:
-            return search.best
+            return search.best, 0.0
     return proven(alive, costs, table, sorted(own), search.best)
 
 

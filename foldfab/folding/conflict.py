@@ -28,7 +28,7 @@ def compare(problem: Problem, own: Repertoire, many: Iterable[Lane]) -> None:
     fresh = [x for x in many if x.number not in own.compared]
     if not fresh:
         return
-    # Plinths shorten a chain, but thickness may only add constraints (section 5.6): what its plain lane meets, it meets.
+    # Plinths shorten a chain, but thickness only adds constraints (section 5.6): what its plain lane meets, it meets.
     plain = {
         x.number: lane(problem, own, x.patch, replace(x.variant, pads=(0.0, 0.0))) for x in fresh if any(x.variant.pads)
     }
@@ -57,7 +57,7 @@ def compare(problem: Problem, own: Repertoire, many: Iterable[Lane]) -> None:
 def _regions_met(
     problem: Problem, own: Repertoire, fresh: list[Lane], known: list[Lane], cuts: Array, same: Bools, once: Bools
 ) -> dict[tuple[int, int], Bools]:
-    """The paper's own test: folding time intervals overlap, and so do the regions that the patches cover when folded."""
+    """The paper's own test: folding time intervals overlap, and so do the regions that patches cover when folded."""
     start = np.array([x.active.start for x in own.lanes])
     stop = np.array([x.active.stop for x in own.lanes])
     apart = (start[:, None] >= stop) | (start >= stop[:, None])
@@ -73,22 +73,25 @@ def windows_table(windows: tuple[tuple[int, int], ...], steps: int) -> Array:
 
 
 def table(
-    problem: Problem, own: Repertoire, first: tuple[Lane, ...], second: tuple[Lane, ...], inside: Array
-) -> Bools | None:
+    problem: Problem, own: Repertoire, first: tuple[Lane, ...], second: tuple[Lane, ...], inside: Array, *,
+    in_modes: bool = False,
+) -> Bools | None:  # fmt: skip
     """Which options of one patch conflict with which of another: (n · w + 1, m · w + 1), lane by lane, deletion last.
 
     `inside` (w, N_s) says which pieces each window holds. None where nothing conflicts.
     """
-    key = (tuple(x.number for x in first), tuple(x.number for x in second))
+    key = (tuple(x.number for x in first), tuple(x.number for x in second), in_modes)
     if key not in own.tables:
-        made = _table(problem, own, first, second, inside)
+        made = _table(own, first, second, inside, in_modes=in_modes)
         own.tables[key] = made if made.any() else np.zeros((0, 0), dtype=bool)
     found = own.tables[key]
     return found if found.size else None
 
 
-def neighbours(own: Repertoire, lanes: Mapping[str, tuple[Lane, ...]]) -> list[tuple[str, str]]:
-    """The pairs of patches whose options may conflict, sorted."""
+def neighbours(
+    own: Repertoire, lanes: Mapping[str, tuple[Lane, ...]], *, in_modes: bool = False
+) -> list[tuple[str, str]]:
+    """The pairs of patches whose options may conflict, sorted; those that only drag apart left out where `in_modes`."""
     found = {(own.lanes[a].patch, own.lanes[b].patch) for a, b in own.pieces}
     together: dict[str, list[str]] = {}
     for patch, many in lanes.items():
@@ -98,9 +101,20 @@ def neighbours(own: Repertoire, lanes: Mapping[str, tuple[Lane, ...]]) -> list[t
         every = [x for p in patches for x in lanes[p]]
         snaps = [x.snap for x in every if x.chain.shape.comes_down]
         alike = not snaps or max(snaps) - min(snaps) <= 2 * min(x.give for x in every)
-        if any(x.drag is not None for x in every) or not alike:
+        if (not in_modes and any(x.drag is not None for x in every)) or not alike:
             found |= set(itertools.combinations(patches, 2))
     return sorted({(min(a, b), max(a, b)) for a, b in found if a in lanes and b in lanes})
+
+
+def modes(own: Repertoire, lanes: Mapping[str, tuple[Lane, ...]]) -> list[set[int]]:
+    """Sets of lanes, by number, that drag the bases of their unit along the same way; one set where none drags any."""
+    found: list[tuple[Lane, set[int]]] = []
+    for x in (x for p in own.unit.patches for x in lanes[p]):
+        mode = next((m for lead, m in found if drag_alike(lead, x)), None)
+        if mode is None:
+            found.append((x, mode := set()))
+        mode.add(x.number)
+    return [mode for _, mode in found]
 
 
 def drag_alike(a: Lane, b: Lane) -> bool:
@@ -148,7 +162,7 @@ def _learn(own: Repertoire, met: Mapping[tuple[int, int], Bools]) -> None:
 
 
 def _table(
-    problem: Problem, own: Repertoire, first: tuple[Lane, ...], second: tuple[Lane, ...], inside: Array
+    own: Repertoire, first: tuple[Lane, ...], second: tuple[Lane, ...], inside: Array, *, in_modes: bool
 ) -> Bools:
     steps, count = inside.shape[1], len(inside)
     met = np.zeros((len(first), steps, len(second), steps), dtype=np.float32)
@@ -160,12 +174,12 @@ def _table(
                     pieces = own.pieces.get((min(p, q), max(p, q)))
                     if pieces is not None:
                         met[i, :, j] += pieces if p < q else pieces.T
-            never[i, j] = not drag_alike(a, b) or not snap_alike(a, b)
-    return _of_windows(met, never, inside, count)
+            never[i, j] = not (in_modes or drag_alike(a, b)) or not snap_alike(a, b)
+    return _of_windows(met.astype(np.float64), never, inside, count)
 
 
 def _of_windows(met: Array, never: Bools, inside: Array, count: int) -> Bools:
-    """Which options conflict, from the pieces that meet (n, N_s, m, N_s) and the lanes that never go together (n, m)."""
+    """Which options conflict: those whose pieces meet (n, N_s, m, N_s), and lanes that never go together (n, m)."""
     shape = (met.shape[0] * count + 1, met.shape[2] * count + 1)
     found = np.zeros(shape, dtype=bool)
     if met.any() or never.any():

@@ -1,7 +1,8 @@
 """Units that are the same but for where they stand: what one can do, all of them can.
 
-Furniture repeats itself, and composites do so a thousand times. The lanes of a unit and the conflicts between them depend
-on nothing but its own patches and plates; for a unit that is a translated copy of another one they are copied as well.
+Furniture repeats itself, and composites do so a thousand times. The lanes of a unit and the conflicts between them
+depend on nothing but its own patches and plates; a translated copy of
+a unit gets copies of them.
 """
 
 from __future__ import annotations
@@ -41,8 +42,8 @@ def repertoire(problem: Problem, unit: Unit) -> Repertoire:
     """What the patches of a unit can do, made once for all its copies."""
     if unit not in problem.repertoires:
         now = pose(problem, unit)
-        known = problem.poses.get(now.signature)
-        made = copied(problem, *known, unit, now) if known else made_from_scratch(problem, unit)
+        known: tuple[Repertoire, Pose] | None = problem.poses.get(now.signature)
+        made = copied(problem, known[0], known[1], unit, now) if known else made_from_scratch(problem, unit)
         problem.poses.setdefault(now.signature, (made, now))
         problem.repertoires[unit] = made
     found: Repertoire = problem.repertoires[unit]

@@ -1,8 +1,8 @@
 """The MWISP of section 5.4 by elimination of one patch after another, for conflict graphs that hang together loosely.
 
-A table says for each combination of options of a few patches what the patches eliminated so far cost at least. The patch
+A table says for each combination of options of a few patches what those eliminated so far cost at least. The patch
 whose elimination makes the smallest table goes next. Linear in the patches where they conflict with few neighbours
-each, like the cells of a honeycomb; exponential in the width of the graph, so that it gives up where a table gets large.
+each, like the cells of a honeycomb; exponential in the width of the graph: it gives up where a table gets large.
 """
 
 from __future__ import annotations

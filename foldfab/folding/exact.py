@@ -8,6 +8,7 @@ same unit always gets the same answer.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -22,8 +23,9 @@ WORK = 20.0
 def proven(
     alive: Mapping[int, Bools], costs: list[Array], table: list[dict[int, Bools]],
     forbidden: list[tuple[tuple[int, int], ...]], known: Mapping[int, int] | None,
-) -> dict[int, int] | None:  # fmt: skip
-    """The cheapest option for each group, or None where there is no choice without conflicts.
+) -> tuple[dict[int, int] | None, float]:  # fmt: skip
+    """The cheapest option for each group, or None where there is no choice without conflicts, and by how much it may be
+    dearer than the cheapest where the work did not suffice to tell.
 
     Args:
         alive: by group, which of its options (n,) may be taken.
@@ -50,11 +52,24 @@ def proven(
     model.minimize(sum(round(float(costs[g][o]) * UNITS_PER_COST) * var for (g, o), var in on.items()))
     for key in (known or {}).items():
         model.add_hint(on[key], True)
+    return _solved(model, on, costs, known)
+
+
+def _solved(
+    model: Any, on: Mapping[tuple[int, int], Any], costs: list[Array], known: Mapping[int, int] | None
+) -> tuple[dict[int, int] | None, float]:
+    from ortools.sat.python import cp_model
+
     solver = cp_model.CpSolver()
     solver.parameters.num_workers = 1
     solver.parameters.random_seed = 0
     solver.parameters.max_deterministic_time = WORK
     status = solver.solve(model)
-    if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-        return {key[0]: key[1] for key, var in on.items() if solver.value(var)}
-    return dict(known) if known is not None else None
+    if status == cp_model.INFEASIBLE:
+        return None, 0.0
+    bound = float(solver.best_objective_bound) / UNITS_PER_COST
+    best = {key[0]: key[1] for key, var in on.items() if solver.value(var)} if status != cp_model.UNKNOWN else known
+    if best is None:
+        return None, 0.0
+    spent = sum(float(costs[g][o]) for g, o in best.items())
+    return dict(best), 0.0 if status == cp_model.OPTIMAL else max(spent - bound, 0.0)

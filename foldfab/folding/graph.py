@@ -8,7 +8,7 @@ import numpy as np
 
 from foldfab.folding.basic import Option
 from foldfab.folding.choose import Combination, cheapest
-from foldfab.folding.conflict import compare, neighbours, table, windows_table
+from foldfab.folding.conflict import compare, modes, neighbours, table, windows_table
 from foldfab.folding.options import options_of
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import Prospects
@@ -16,6 +16,9 @@ from foldfab.folding.realise import Clash
 from foldfab.folding.repertoire import Lane, Repertoire
 from foldfab.folding.symmetry import bound, signature, unlike
 from foldfab.geometry.arrays import Array, Bools
+
+MANY = 16
+"""Patches of a unit beyond which each way to drag its bases is looked at by itself, and not every pair of patches."""
 
 Lesson = tuple[Clash, tuple[tuple[Lane, tuple[int, int]] | None, ...]]
 """A clash and what was chosen for each patch of the unit."""
@@ -41,12 +44,15 @@ class Graph:
         inside = windows_table(self.options[0].windows, problem.options.shrink_steps)
         place = {p: g for g, p in enumerate(self.patches)}
         self.tables: dict[tuple[int, int], Bools] = {}
-        for a, b in neighbours(own, found.lanes):
-            made = table(problem, own, found.lanes[a], found.lanes[b], inside)
+        in_modes = len(self.patches) > MANY and any(x.drag is not None for x in own.lanes)
+        self.modes: list[list[Bools]] = self._modes(modes(own, found.lanes)) if in_modes else []
+        for a, b in neighbours(own, found.lanes, in_modes=in_modes):
+            made = table(problem, own, found.lanes[a], found.lanes[b], inside, in_modes=in_modes)
             if made is not None:
                 self.tables[place[a], place[b]] = made
         self._treat_alike(problem, chosen or {})
         self.forbidden: set[Combination] = set()
+        self.gaps: list[float] = []
         self.learned: list[Lesson] = []
         for clash, places in learned:
             self.learn(tuple(o.index(place) for o, place in zip(self.options, places, strict=True)), clash)
@@ -66,7 +72,26 @@ class Graph:
 
     def cheapest(self) -> tuple[int, ...] | None:
         """The cheapest choice, one option a patch."""
-        return cheapest(self.costs, self.tables, frozenset(self.forbidden))
+        self.gaps.clear()
+        if not self.modes:
+            return cheapest(self.costs, self.tables, frozenset(self.forbidden), self.gaps)
+        best: tuple[int, ...] | None = None
+        for masks in self.modes:
+            costs = [np.where(mask, cost, np.inf) for mask, cost in zip(masks, self.costs, strict=True)]
+            if best is None or sum(float(cost.min()) for cost in costs) < self.weight(best):
+                picked = cheapest(costs, self.tables, frozenset(self.forbidden), self.gaps)
+                if picked is not None and (best is None or self.weight(picked) < self.weight(best)):
+                    best = picked
+        return best
+
+    def _modes(self, lanes: list[set[int]]) -> list[list[Bools]]:
+        """For each way to drag the bases, which options of each patch (n,) go along; deletion always does."""
+        made = []
+        for mode in lanes:
+            alike = [[x.number in mode for x in o.lanes] for o in self.options]
+            masks = [np.repeat(own, len(o.windows)) for own, o in zip(alike, self.options, strict=True)]
+            made.append([np.append(mask, True).astype(bool) for mask in masks])
+        return made
 
     def weight(self, picked: tuple[int, ...]) -> float:
         """What a choice counts in the search."""

@@ -1,8 +1,8 @@
 """A better start for the optimum: the greedy order once more, without what stood in a unit's way.
 
-Where a unit costs more than it must, the folds that took its room are to blame. Each of them is forbidden in turn and the
-greedy order is made anew; what is cheaper is kept. The nearer the start is to the optimum, the smaller is the constraint
-program that proves it.
+Where a unit costs more than it must, the folds that took its room are to blame. Each of them is forbidden in turn and
+the greedy order is made anew; what is cheaper is kept. The nearer the start is to the optimum, the smaller is the
+constraint program that proves it.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def _blamed(
     """The folds that keep later units from their cheapest choice."""
     chosen: dict[str, Variant] = {}
     for fold in known.folds:
-        cheapest = choices.get(fold.unit.name)
+        cheapest = choices[fold.unit.name] if problem.tree.units.get(fold.unit.name) is fold.unit else None
         if cheapest is not None and fold.weight > cheapest.weight + BETTER:
             own = repertoire(problem, fold.unit)
             around = look(problem, scene, own)

@@ -1,10 +1,10 @@
 """The choice of modifications and the order of units as one constraint program (beyond section 5.5).
 
-One Boolean for each option of each patch, exactly one true a patch, and a place in the order for each unit. Options of one
-unit that conflict exclude each other whatever the order; all that depends on the order is added as *cuts*, as it is
+One Boolean for each option of each patch, exactly one true a patch, and a place in the order for each unit. Options of
+one unit that conflict exclude each other whatever the order; all that depends on the order is added as *cuts*, as it is
 found by playing choices through. The program is a relaxation throughout, so its optimum is a lower bound on any fold,
-and a fold that costs no more is optimal. CP-SAT runs with one worker, a fixed seed and a limit in work and not in time, so
-that the same furniture always gets the same answer.
+and a fold that costs no more is optimal. CP-SAT runs with one worker, a fixed seed and a limit in work and not in time,
+so that the same furniture always gets the same answer.
 """
 
 from __future__ import annotations
@@ -86,6 +86,17 @@ class Master:
         terms += [self._is_before(*pair) for pair in cut.order]
         self.model.add(sum(terms) <= len(terms) - 1)
 
+    def one_of(self, ways: list[dict[str, Bools]]) -> None:
+        """Demands that all patches take options (n,) of the same one of several ways."""
+        chosen = [self.model.new_bool_var(f"way {k}") for k in range(len(ways))]
+        if ways:
+            self.model.add_exactly_one(chosen)
+        for way, literal in zip(ways, chosen, strict=True):
+            for p, mask in way.items():
+                for i in self.worth[p]:
+                    if not mask[i]:
+                        self.model.add_implication(self.on[p, i], ~literal)
+
     def treat_alike(self, p: str, q: str, apart: Bools) -> None:
         """Demands options of two patches that are not apart (n, m)."""
         self._exclude(p, q, apart)
@@ -100,10 +111,10 @@ class Master:
         self.model.add(sum(every) >= int(np.floor(least * UNITS_PER_COST)) - len(every))
 
     def solved(self, work: float, hint: Proposal | None) -> tuple[Proposal | None, float, float]:
-        """The best proposal, the lower bound, and the work that it took; no proposal where there is none within the work."""
+        """The best proposal, the lower bound and the work it took; no proposal where there is none within the work."""
         from ortools.sat.python import cp_model
 
-        self.model.clear_hints()
+        self.model.clear_hints()  # type: ignore[no-untyped-call]
         for p, i in (hint.chosen if hint else {}).items():
             if (p, i) in self.on:
                 self.model.add_hint(self.on[p, i], True)

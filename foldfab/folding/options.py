@@ -19,9 +19,10 @@ from foldfab.folding.prospects import Prospects
 from foldfab.folding.repertoire import Lane, awkwardness
 from foldfab.geometry.arrays import Array, Bools
 
-DELETION = 100.0
-"""What deleting a patch counts in the search, times its importance, instead of eq. 3: nobody wants a shelf without its
-wall because that is cheaper than a hinge. The cost that is reported is the paper's."""
+DELETION = 10.0
+"""What every deletion counts in the search beyond eq. 3, more than all of eq. 1 can be: nobody wants a shelf without
+its wall because that is cheaper than a hinge. So as few patches as possible are deleted, and of such solutions the
+cheapest is taken. The cost that is reported is the paper's."""
 PREFERENCE = 1e-6
 """Weight of the preferences that decide between options of equal cost: small plinths, staying within the outline."""
 
@@ -89,7 +90,7 @@ def _options(
     extra = PREFERENCE * awkwardness(problem, lanes, offset)[:, None]
     weight = np.where(out, np.inf, price + extra)
     gone = site.importance * basic.cost(0, 0.0, options)
-    weights = np.append(weight.ravel(), DELETION * site.importance)
+    weights = np.append(weight.ravel(), DELETION + gone)
     made = Options(patch, lanes, np.append(price.ravel(), gone), weights, windows)
     weights[~_allowed(problem, made)] = np.inf
     return made

@@ -24,6 +24,7 @@ from foldfab.folding.unit_fold import (
     Choice,
     Refusal,
     UnitFold,
+    estimated,
     fold_alone,
     fold_seen,
     fold_unit,
@@ -73,11 +74,6 @@ class _State:
 def floors(problem: Problem) -> dict[str, Choice]:
     """By unit, its cheapest choice without conflicts, whatever stands around it: no order lets it fold for less."""
     return {u.name: least_choice(problem, repertoire(problem, u)) for u in problem.units}
-
-
-def tight_floors(problem: Problem, scene: Scene) -> dict[str, float]:
-    """By unit, what it counts where nothing but itself is there and it is played through: no order lets it fold for less."""
-    return {u.name: _weight(fold_alone(problem, scene, u)) for u in problem.units}
 
 
 def greedy(problem: Problem, scene: Scene, floor: Mapping[str, Choice]) -> Ordered:
@@ -139,10 +135,7 @@ def _guessed(state: _State, scene: Scene, unit: Unit, around: Surroundings) -> f
     own, cheapest = repertoire(state.problem, unit), state.floor[unit.name]
     if not is_solved(state.problem, around) and has_room(state.problem, own, around, cheapest):
         return cheapest.weight
-    found = fold_seen(state.problem, scene, own, around)
-    if isinstance(found, Refusal) and unit not in state.problem.hopeless:
-        fold_alone(state.problem, state.scene, unit)
-    return _weight(found)
+    return min(estimated(state.problem, scene, own, around), REFUSED)
 
 
 def _folded(state: _State, name: str) -> UnitFold | None:
@@ -150,6 +143,8 @@ def _folded(state: _State, name: str) -> UnitFold | None:
     own = repertoire(state.problem, state.rest[name])
     around = look(state.problem, state.scene, own)
     fold = fold_seen(state.problem, state.scene, own, around)
+    if isinstance(fold, Refusal) and not around.standing and own.unit not in state.problem.hopeless:
+        fold_alone(state.problem, state.scene, own.unit)
     if round(_weight(fold) - state.guess[name], DIGITS) > 0:
         state.guess[name] = _weight(fold)
         return None
@@ -163,12 +158,14 @@ def _folded(state: _State, name: str) -> UnitFold | None:
     return final if isinstance(final, UnitFold) else fold
 
 
-def neighbouring(problem: Problem) -> list[set[str]]:
-    """Groups of units whose folds reach into each other's space, by name."""
+def neighbouring(problem: Problem, scene: Scene) -> list[set[str]]:
+    """Groups of units that have to do with each other, by name: their folds share space, or one sees the other."""
     graph: nx.Graph[str] = nx.Graph()
     for name, others in _beside(problem).items():
+        unit = problem.tree.units[name]
+        around = look(problem, scene, repertoire(problem, unit))
         graph.add_node(name)
-        graph.add_edges_from((name, other) for other in others)
+        graph.add_edges_from((name, other) for other in others | depends_on(problem, unit, around))
     return sorted((set(c) for c in nx.connected_components(graph)), key=min)
 
 
@@ -196,7 +193,7 @@ def _best(state: _State) -> str | None:
             does_hold = fold is not None
             if fold is None:
                 break
-            change = round(_change(state, fold), DIGITS)
+            change = round(_change(state, fold), DIGITS) if len(state.rest) > 1 else 0.0
             best = min(best, (change, name)) if best is not None else (change, name)
         # Where what was guessed does not hold, the look-ahead begins anew; guesses only ever rise.
         if does_hold:

@@ -26,6 +26,9 @@ RAISES = 4
 """How often plinths are made higher because of what the raised chain meets."""
 THE_BOX = "the bounding box"
 
+Moved = dict[object, Batch]
+"""The surroundings as they move with the bases, by way and section."""
+
 Room = dict[int, Bools]
 """By lane, which of its pieces (N_s,) meet something outside the unit."""
 
@@ -49,12 +52,13 @@ def prospects(problem: Problem, own: Repertoire, around: Surroundings, *, in_pla
     every = [x for many in plain.values() for x in many]
     room: Room = {}
     met: dict[int, set[int]] = {}
-    _look_at(problem, own, around, every, room, met)
+    moved: Moved = {}
+    _look_at(problem, own, around, every, room, met, moved)
     lanes = {}
     for patch, many in plain.items():
-        raised = [r for x in many if room[x.number].any() for r in _raised(problem, own, around, x, room, met)]
+        raised = [r for x in many if room[x.number].any() for r in _raised(problem, own, around, x, room, met, moved)]
         lanes[patch] = (*many, *raised)
-    _raise_partners(problem, own, around, lanes, room, met)
+    _raise_partners(problem, own, around, lanes, room, met, moved)
     owners = {n: tuple(sorted({_owner(around, i) for i in found})) for n, found in met.items()}
     return Prospects(lanes, room, owners, met)
 
@@ -62,14 +66,14 @@ def prospects(problem: Problem, own: Repertoire, around: Surroundings, *, in_pla
 def blocked_pieces(problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane]) -> Room:
     """Which pieces of some lanes meet something around the unit or leave what they must keep to."""
     room: Room = {}
-    _look_at(problem, own, around, many, room, {})
+    _look_at(problem, own, around, many, room, {}, {})
     return room
 
 
 def in_the_way(problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane]) -> tuple[str, ...]:
     """The owners of what some lanes meet around the unit, sorted."""
     met: dict[int, set[int]] = {}
-    _look_at(problem, own, around, many, {}, met)
+    _look_at(problem, own, around, many, {}, met, {})
     return tuple(sorted({_owner(around, box) for found in met.values() for box in found}))
 
 
@@ -85,20 +89,21 @@ def _owner(around: Surroundings, box: int) -> str:
 
 
 def _look_at(
-    problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane], room: Room, met: dict[int, set[int]]
-) -> None:
+    problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane], room: Room, met: dict[int, set[int]],
+    moved: Moved,
+) -> None:  # fmt: skip
     """Finds out which pieces of the lanes have no room, and what they meet."""
-    found, hit = _held_against(problem, own, around, many)
+    found, hit = _held_against(problem, own, around, many, moved)
     room.update(found)
     met.update(hit)
     for x in many:
-        if x.is_out or (problem.options.stay_in_box and _leaves_box(problem, own, around, x)):
+        if x.is_out or (problem.options.stay_in_box and leaves_the_box(problem, own, around, x)):
             room[x.number] = np.ones_like(room[x.number])
             met[x.number].add(-1)
 
 
 def _held_against(
-    problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane]
+    problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane], moved: Moved
 ) -> tuple[Room, dict[int, set[int]]]:
     """Which pieces of the lanes meet what is around them, and which of its boxes."""
     steps = problem.options.shrink_steps
@@ -112,7 +117,10 @@ def _held_against(
             a = swept(problem, own, group, section)
             if a is None:
                 continue
-            pieces, lanes, boxes = blocked(a, cuts, _carried(own, around, group[0], section), own_plates)
+            key = (_way(own, group[0]), section)
+            if key not in moved:
+                moved[key] = _carried(own, around, group[0], section)
+            pieces, lanes, boxes = blocked(a, cuts, moved[key], own_plates)
             for number, box in zip(lanes.tolist(), boxes.tolist(), strict=True):
                 met[number].add(box)
             for x in group:
@@ -124,11 +132,15 @@ def _alike(own: Repertoire, many: list[Lane]) -> list[list[Lane]]:
     """Lanes with which the unit's bases move in the same way."""
     groups: dict[object, list[Lane]] = {}
     for x in many:
-        key: object = np.round(x.drag, 6).tobytes() if x.drag is not None else ""
-        if stops_early(own, x):
-            key = (x.chain.far, round(float(x.way[2]), 6))
-        groups.setdefault(key, []).append(x)
+        groups.setdefault(_way(own, x), []).append(x)
     return list(groups.values())
+
+
+def _way(own: Repertoire, x: Lane) -> object:
+    """How the unit's bases move with a lane, hashable."""
+    if stops_early(own, x):
+        return (x.chain.far, round(float(x.way[2]), 6))
+    return np.round(x.drag, 6).tobytes() if x.drag is not None else ""
 
 
 def _carried(own: Repertoire, around: Surroundings, lead: Lane, section: int) -> Batch:
@@ -147,8 +159,9 @@ def _own_plates(problem: Problem, own: Repertoire, around: Surroundings) -> Bool
 
 
 def _raised(
-    problem: Problem, own: Repertoire, around: Surroundings, first: Lane, room: Room, met: dict[int, set[int]]
-) -> tuple[Lane, ...]:
+    problem: Problem, own: Repertoire, around: Surroundings, first: Lane, room: Room, met: dict[int, set[int]],
+    moved: Moved,
+) -> tuple[Lane, ...]:  # fmt: skip
     """The lane on plinths as high as what it meets folded on its own bases; nothing where that does not help."""
     current, clear = first, problem.sites[first.patch].clear
     for _ in range(RAISES):
@@ -162,7 +175,7 @@ def _raised(
             return ()
         current = higher
         if current.number not in room:
-            _look_at(problem, own, around, [current], room, met)
+            _look_at(problem, own, around, [current], room, met, moved)
         if not room[current.number].any():
             break
     helps = current is not first and room[current.number].sum() < room[first.number].sum()
@@ -171,7 +184,7 @@ def _raised(
 
 def _raise_partners(
     problem: Problem, own: Repertoire, around: Surroundings, lanes: dict[str, tuple[Lane, ...]], room: Room,
-    met: dict[int, set[int]],
+    met: dict[int, set[int]], moved: Moved,
 ) -> None:  # fmt: skip
     """Slanted lanes drag their base together: where one stands on plinths, the others may as well."""
     wanted = sorted({x.variant for many in lanes.values() for x in many if x.drag is not None and any(x.variant.pads)})
@@ -180,7 +193,7 @@ def _raise_partners(
         found = (lane(problem, own, patch, v) for v in wanted if v not in made)
         fresh = [x for x in found if x is not None and sum(x.variant.pads) <= PAD_SHARE * problem.sites[patch].clear]
         if fresh:
-            _look_at(problem, own, around, fresh, room, met)
+            _look_at(problem, own, around, fresh, room, met, moved)
             lanes[patch] = (*many, *fresh)
 
 
@@ -203,7 +216,8 @@ def _needed_pads(
     return (pads[0], pads[1])
 
 
-def _leaves_box(problem: Problem, own: Repertoire, around: Surroundings, x: Lane) -> bool:
+def leaves_the_box(problem: Problem, own: Repertoire, around: Surroundings, x: Lane) -> bool:
+    """Whether a lane, or what it carries along, leaves the bounding box of the open furniture."""
     root = own.unit.bases[int(around.cluster[0])]
     for section in x.active:
         found = swept(problem, own, (x,), section)

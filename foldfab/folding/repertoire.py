@@ -134,12 +134,13 @@ def resting(problem: Problem, own: Repertoire, many: Iterable[Lane], section: in
     parts = []
     for x in many:
         if section not in x.active:
-            is_open = section < x.active.start
-            at = own.movers[x.number][x.active.start if is_open else x.active.stop - 1][0 if is_open else -1]
-            was = own.nominal.down[x.chain.anchor][
-                x.active.start if is_open else x.active.stop - 1, 0 if is_open else -1
-            ]
-            shift = upright(own.nominal.down[x.chain.anchor][section] - was)
+            down = own.nominal.down[x.chain.anchor]
+            if section < x.active.start:
+                # Not the first frame of its sweep, in which an accordion has snapped already.
+                at, was = anatomy.swept_boxes(x.chain, problem.thickness, np.zeros(1), *_at_home(x.chain))[0], 0.0
+            else:
+                at, was = own.movers[x.number][x.active.stop - 1][-1], float(down[x.active.stop - 1, -1])
+            shift = upright(down[section] - was)
             parts.append((moved(still(at, FRAMES), shift[:, None]), x.number))
     return joined(parts, problem.thickness.gap / 2 - TOUCH) if parts else None
 
@@ -170,6 +171,12 @@ def awkwardness(problem: Problem, many: tuple[Lane, ...], offset: Array) -> Arra
     pads = np.array([sum(x.variant.pads) for x in many])
     found: Array = (out.sum(1) + 2 * pads) / float(np.linalg.norm(most - least))
     return found
+
+
+def _at_home(chain: Chain) -> tuple[Array, Array | None]:
+    """No translation (1, 3) of the anchor, and none of the far base where there is one."""
+    still = np.zeros((1, 3))
+    return still, still if chain.far is not None else None
 
 
 def cuts_of(own: Repertoire) -> Array:

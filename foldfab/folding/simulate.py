@@ -25,6 +25,8 @@ SKIN = 0.02
 """Parts may come this close to touching in the simulation, mm; the kernel measures the true gap later."""
 STRIDE = 2
 """Every how many samples of a motion are looked at."""
+MANY = 60
+"""Chains of a unit beyond which those that stand still are not all looked at."""
 SCENE = 40
 """Frames that are looked at in one go."""
 
@@ -77,8 +79,8 @@ def _played(
         touched |= {chain.anchor, chain.far}
     for i in rest:
         chain = chains[i]
-        # What stands still far from everything that folds moves along with it or not at all.
-        if {chain.anchor, chain.far} & (touched - {None}):
+        # In a unit of very many patches only those beside what folds are looked at.
+        if len(chains) <= MANY or {chain.anchor, chain.far} & (touched - {None}):
             near = motion.shift[chain.anchor][frames]
             parts = [
                 moved(anatomy.resting_boxes(chain, thickness, float(motion.fold[chain.patch][frames[0]])), near[0])

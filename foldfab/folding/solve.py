@@ -11,10 +11,13 @@ from foldfab.folding import anatomy, basic
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.improve import improved, weight
 from foldfab.folding.model import FoldSolution, Modification, Step, Thickness
-from foldfab.folding.optimum import NO_MORE, optimal
-from foldfab.folding.ordering import Ordered, floors, greedy, tight_floors, travel
-from foldfab.folding.problem import Problem
+from foldfab.folding.optimum import NO_MORE, PLAYING, lower_bound, optimal
+from foldfab.folding.options import options_of
+from foldfab.folding.ordering import Ordered, floors, greedy, travel
+from foldfab.folding.problem import Problem, demanding
+from foldfab.folding.prospects import unhindered
 from foldfab.folding.rehearsal import first_clash
+from foldfab.folding.repertoire import extend
 from foldfab.folding.scene import open_scene
 from foldfab.folding.site import sites, slab
 from foldfab.folding.soundness import disconnected, hangs_together, rigid_patches
@@ -62,8 +65,13 @@ def solve(scaffold: Scaffold) -> FoldSolution:
 def _solved(scaffold: Scaffold, thickness: Thickness) -> FoldSolution:
     problem = posed(scaffold, thickness)
     _require_variants(problem)
+    _require_allowed(problem)
+    least: float | None = None
     for _ in range(REHEARSALS):
         ordered, bound = _ordered(problem)
+        # What a rehearsal forbids belongs to one order; the bound is over all options.
+        least = bound if least is None else least
+        bound = min(bound, least)
         met = first_clash(problem, open_scene(problem), ordered.folds)
         if met is None:
             return solution(problem, bound, ordered)
@@ -77,12 +85,15 @@ def _ordered(problem: Problem) -> tuple[Ordered, float]:
     scene, choices = open_scene(problem), floors(problem)
     ordered = greedy(problem, scene, choices)
     floor = {name: choice.weight for name, choice in choices.items()}
-    if ordered.refusals or weight(ordered) - sum(floor.values()) > NO_MORE:
-        floor = tight_floors(problem, scene)
-    bound = sum(floor.values())
-    if problem.options.ordering == "optimal" and (ordered.refusals or weight(ordered) - bound > NO_MORE):
+    if not ordered.refusals and weight(ordered) - sum(floor.values()) <= NO_MORE:
+        return ordered, sum(floor.values())
+    if problem.options.ordering == "greedy":
+        bound = sum(floor.values()) if ordered.refusals else lower_bound(problem, scene, ordered, floor)
+    else:
+        before = len(problem.plays)
         known = None if ordered.refusals else improved(problem, ordered, choices)
-        found, bound = optimal(problem, scene, known, floor, problem.options.time_limit)
+        work = problem.options.time_limit - PLAYING * (len(problem.plays) - before)
+        found, bound = optimal(problem, scene, known, floor, work)
         ordered = found or ordered
     if ordered.refusals:
         raise FoldingError(_refused(ordered))
@@ -103,6 +114,28 @@ def posed(scaffold: Scaffold, thickness: Thickness) -> Problem:
         {base.name: anatomy.faces(base, thickness) for base in scaffold.bases}, furniture, (low.min(0), high.max(0)),
     )  # fmt: skip
     return replace(problem, twins=twins(problem))
+
+
+def _require_allowed(problem: Problem) -> None:
+    """What the recipe pins or forbids has to leave every patch something that it can do."""
+    for unit in problem.units:
+        asked = [p for p in unit.patches if demanding(problem, p)]
+        own = repertoire(problem, unit)
+        for patch in asked:
+            while own.later[patch]:
+                extend(problem, own, patch)
+        options = options_of(problem, unhindered(problem, own), np.zeros(3)) if asked else {}
+        for patch in asked:
+            if not np.isfinite(options[patch].weight).any():
+                names = ", ".join(part.name for part in demanding(problem, patch))
+                able = sorted({(x.variant.mechanism, x.variant.hinges) for x in own.plain[patch]})
+                told = ", ".join(
+                    f"{how} with {count} hinge{'s' * (count > 1)}" if count else how for how, count in able
+                )
+                raise FoldingError(
+                    f"what is pinned or forbidden for {names} leaves {patch} nothing that it can do; "
+                    f"it can fold {told or 'not at all'}, or be narrowed or deleted where that is not ruled out"
+                )
 
 
 def _require_variants(problem: Problem) -> None:

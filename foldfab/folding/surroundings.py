@@ -132,6 +132,10 @@ def _brushed(own: Repertoire, low: Array, high: Array, group: Indices, is_other:
     if not drags or not len(a) or not len(b):
         return a[:0]
     least, most = np.min([d.min(0) for d in drags], 0), np.max([d.max(0) for d in drags], 0)
+    # Few of either side come near the other one at all.
+    a = a[(low[a] <= high[b].max(0) + most).all(1) & (high[a] >= low[b].min(0) + least).all(1)]
+    if len(a):
+        b = b[(low[b] + least <= high[a].max(0)).all(1) & (high[b] + most >= low[a].min(0)).all(1)]
     p, q = near_pairs((low[a], high[a]), (low[b] + least, high[b] + most))
     found: Indices = np.unique(np.concatenate([a[p], b[q]]))
     return found
@@ -192,7 +196,7 @@ def _owner_standing(solid: Solid, held_by: str) -> str:
 
 
 def _rooms(scene: Scene, shift: Array, p: Indices, q: Indices) -> Array:
-    """(n,) how far the upper solids `q` may come down on the lower ones `p`, mm; infinite where they pass each other."""
+    """(n,) how far the solids `q` may come down on the lower ones `p`, mm; infinite where they pass each other."""
     room: Array = scene.low[q, 2] + shift[q, 2] - scene.high[p, 2] - shift[p, 2]
     for k, (a, b) in enumerate(zip(p.tolist(), q.tolist(), strict=True)):
         if len(scene.solids[a].boxes) > 1 or len(scene.solids[b].boxes) > 1:

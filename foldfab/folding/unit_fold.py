@@ -18,7 +18,7 @@ from foldfab.folding.graph import Graph
 from foldfab.folding.model import Chain
 from foldfab.folding.press import Motion
 from foldfab.folding.problem import Problem
-from foldfab.folding.prospects import blocked_pieces, prospects, unhindered
+from foldfab.folding.prospects import Prospects, blocked_pieces, prospects, unhindered
 from foldfab.folding.realise import Clash, realised
 from foldfab.folding.reasons import reason_against, reasons_of
 from foldfab.folding.repertoire import Lane, Repertoire, extend
@@ -92,8 +92,29 @@ def fold_seen(
     return found
 
 
+def estimated(problem: Problem, scene: Scene, own: Repertoire, around: Surroundings) -> float:
+    """What a unit counts at least where it has looked around: its cheapest choice that has room, not played."""
+    known = problem.solved.get((around.key, False, None))
+    if known is not None:
+        return known.weight if isinstance(known, UnitFold) else np.inf
+    key = (around.key, "estimated")
+    if key not in problem.solved:
+        problem.solved[key] = _estimate(problem, scene, own, around)
+    found: float = problem.solved[key]
+    return found
+
+
+def _estimate(problem: Problem, scene: Scene, own: Repertoire, around: Surroundings) -> float:
+    if around.standing or own.unit in problem.hopeless:
+        return np.inf
+    found = prospects(problem, own, around, in_place=False)
+    graph = Graph(problem, own, found, around.offset, chosen=scene.chosen)
+    _, graph, picked = _picked(problem, scene, own, around, found, graph, in_place=False)
+    return graph.weight(picked) if picked is not None else np.inf
+
+
 def fold_alone(problem: Problem, scene: Scene, unit: Unit) -> UnitFold | Refusal:
-    """What a unit could do where nothing but itself is there; where that is nothing, it is never tried again."""
+    """What a unit could do where nothing but itself is there; where that is nothing, it is not tried any more."""
     bare = alone(scene, unit)
     own = repertoire(problem, unit)
     found = fold_seen(problem, bare, own, look(problem, bare, own))
@@ -114,7 +135,10 @@ def least_choice(problem: Problem, own: Repertoire) -> Choice:
     if picked is None:
         return Choice(np.inf, {})
     places = {o.patch: o.place(i) for o, i in zip(graph.options, picked, strict=True)}
-    return Choice(graph.weight(picked), {p: place for p, place in places.items() if place is not None})
+    # Where the work did not suffice to prove the choice, what it may be too dear by is no part of what must be paid.
+    return Choice(
+        graph.weight(picked) - sum(graph.gaps), {p: place for p, place in places.items() if place is not None}
+    )
 
 
 def is_solved(problem: Problem, around: Surroundings) -> bool:
@@ -136,17 +160,11 @@ def _fold(
     unit = own.unit
     if around.standing:
         return Refusal(unit, f"{', '.join(sorted(around.standing)[:3])} in the way still stands unfolded")
+    why: list[str] = []
     found = prospects(problem, own, around, in_place=in_place)
     graph = Graph(problem, own, found, around.offset, chosen=scene.chosen)
-    why: list[str] = []
     for _ in range(ROUNDS):
-        picked = graph.cheapest()
-        while wanted := _wanted(problem, own, graph, picked):
-            for patch in wanted:
-                extend(problem, own, patch)
-            found = prospects(problem, own, around, in_place=in_place)
-            graph = Graph(problem, own, found, around.offset, graph.learned, scene.chosen)
-            picked = graph.cheapest()
+        found, graph, picked = _picked(problem, scene, own, around, found, graph, in_place=in_place)
         if picked is None:
             break
         chosen = {o.patch: o[i] for o, i in zip(graph.options, picked, strict=True)}
@@ -158,6 +176,21 @@ def _fold(
         why += [result.reason] if result.reason not in why else []
         graph.learn(picked, result)
     return Refusal(unit, reason_against(problem, own, found, why))
+
+
+def _picked(
+    problem: Problem, scene: Scene, own: Repertoire, around: Surroundings, found: Prospects, graph: Graph, *,
+    in_place: bool,
+) -> tuple[Prospects, Graph, tuple[int, ...] | None]:  # fmt: skip
+    """The cheapest choice without conflicts, over all lanes that could be part of it."""
+    picked = graph.cheapest()
+    while wanted := _wanted(problem, own, graph, picked):
+        for patch in wanted:
+            extend(problem, own, patch)
+        found = prospects(problem, own, around, in_place=in_place)
+        graph = Graph(problem, own, found, around.offset, graph.learned, scene.chosen)
+        picked = graph.cheapest()
+    return found, graph, picked
 
 
 def _wanted(problem: Problem, own: Repertoire, graph: Graph, picked: tuple[int, ...] | None) -> list[str]:

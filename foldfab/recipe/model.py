@@ -85,7 +85,7 @@ class FoldOptions:
     """Whether H-scaffolds may fold slanted (T-scaffolds always may)."""
     stay_in_box: bool = False
     """Whether the fold must stay within the bounding box of the input."""
-    ordering: Ordering = "greedy"
+    ordering: Ordering = "optimal"
     """How units are ordered: greedily (section 5.5), or modifications and order chosen in one shot."""
     collisions: Collisions = "swept"
     """What makes two options conflict: shapes that meet in time, or the paper's folding times and regions that both

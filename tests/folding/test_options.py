@@ -72,7 +72,7 @@ def test_deletion_counts_many_times_its_price_in_the_search(problem: Make) -> No
     made = problem("three_walls")
     options, share = of(made, "left"), made.sites["left"].importance
     assert options.price[-1] == pytest.approx(0.5 * share)
-    assert options.weight[-1] == pytest.approx(DELETION * share)
+    assert options.weight[-1] == pytest.approx(DELETION + 0.5 * share)
     assert options.weight[-1] > options.weight[possible(options)[:-1]].max()
 
 

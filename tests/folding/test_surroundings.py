@@ -111,12 +111,11 @@ def test_what_a_unit_does_not_see_is_not_in_its_way(problem: Make, folded: Folde
 
 def test_an_unfolded_table_keeps_the_ceiling_up(in_box: Problem) -> None:
     scene = open_scene(in_box)
-    unit = in_box.unit_of["left"]
     around = seen(in_box, scene, "left")
     flat, raised, owner = around.limits["ground", "ceiling"]
     # The table's top is as little flat as the legs that hold it up: nothing but the ground lies there.
     assert flat == pytest.approx(100 - 0.3)
-    assert owner in around.standing <= {"leg-left", "leg-right"}
+    assert around.standing == {"leg-left", "leg-right"} and owner in around.standing
     assert raised == pytest.approx(102 - 46 - 0.3)
 
 
@@ -130,8 +129,7 @@ def test_a_folded_table_lets_the_ceiling_down_onto_it(in_box: Problem) -> None:
 
 
 def test_alone_a_unit_has_no_limit_but_its_own_plates(in_box: Problem) -> None:
-    unit = in_box.unit_of["left"]
-    around = seen(in_box, alone(open_scene(in_box), unit), "left")
+    around = seen(in_box, alone(open_scene(in_box), in_box.unit_of["left"]), "left")
     assert owners(around) == {("ground", "base"), ("ceiling", "base")}
     flat, raised, owner = around.limits["ground", "ceiling"]
     assert (flat, raised, owner) == (pytest.approx(100.0 - 0.3), np.inf, "")

@@ -190,7 +190,7 @@ def test_defaults() -> None:
 
 def test_the_solvers_own_options() -> None:
     fold = parse(STOOL, "stool.json", "stool").fold
-    assert (fold.ordering, fold.collisions, fold.symmetry, fold.time_limit) == ("greedy", "swept", False, 2.0)
+    assert (fold.ordering, fold.collisions, fold.symmetry, fold.time_limit) == ("optimal", "swept", False, 2.0)
     given = {"ordering": "optimal", "collisions": "regions", "symmetry": True, "time_limit": 30}
     fold = parse({**STOOL, "fold": given}, "stool.json", "stool").fold
     assert (fold.ordering, fold.collisions, fold.symmetry, fold.time_limit) == ("optimal", "regions", True, 30.0)

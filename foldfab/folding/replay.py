@@ -1,0 +1,88 @@
+"""A proposal of the constraint program played through: the proof that it holds, or what is wrong with it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from foldfab.folding import basic
+from foldfab.folding.congruent import repertoire
+from foldfab.folding.group import Group
+from foldfab.folding.lessons import lessons_of, lessons_of_others, must_wait, out_of_the_box
+from foldfab.folding.master import Proposal
+from foldfab.folding.model import Chain
+from foldfab.folding.options import Options
+from foldfab.folding.ordering import after
+from foldfab.folding.problem import Problem
+from foldfab.folding.prospects import prospects
+from foldfab.folding.realise import Clash, realised
+from foldfab.folding.reasons import reasons_of
+from foldfab.folding.scene import Scene, shown
+from foldfab.folding.surroundings import look
+from foldfab.folding.unit_fold import Refusal, UnitFold, fold_unit
+from foldfab.folding.units import Unit
+
+
+def played(
+    group: Group, options: Mapping[str, Options], proposal: Proposal
+) -> tuple[tuple[UnitFold, ...] | None, bool]:
+    """The folds of a proposal, and whether it holds as it is; where it does not, something was learned from that.
+
+    A unit that cannot fold as proposed folds as it best can, so that a proposal that almost holds still makes a fold.
+    """
+    problem, scene, holds = group.problem, group.scene, True
+    by_name = {u.name: u for u in group.units}
+    for unit in group.units:
+        scene = shown(scene, unit, _plain_chains(problem, unit, options, proposal), is_folded=False)
+    folds: list[UnitFold] = []
+    done: set[str] = set()
+    for name in proposal.order:
+        fold = _unit_played(group, scene, by_name[name], options, proposal, done) if holds else None
+        if fold is None:
+            holds = False
+            repaired = fold_unit(problem, scene, by_name[name])
+            if isinstance(repaired, Refusal):
+                return None, False
+            fold = repaired
+        folds.append(fold)
+        scene = after(problem, scene, fold)
+        done.add(name)
+    return tuple(folds), holds
+
+
+def _plain_chains(problem: Problem, unit: Unit, options: Mapping[str, Options], proposal: Proposal) -> list[Chain]:
+    """The chains of a proposal before anything is balanced."""
+    made = []
+    for patch in unit.patches:
+        option = options[patch][proposal.chosen[patch]]
+        span = basic.window_span(problem.sites[patch], option.window, problem.options.shrink_steps, problem.thickness)
+        if option.variant is not None and span is not None:
+            chain = basic.chain(problem.sites[patch], option.variant, span, problem.thickness)
+            made += [chain] if chain is not None else []
+    return made
+
+
+def _unit_played(
+    group: Group, scene: Scene, unit: Unit, options: Mapping[str, Options], proposal: Proposal, done: set[str]
+) -> UnitFold | None:
+    problem, own = group.problem, repertoire(group.problem, unit)
+    around = look(problem, scene, own)
+    if around.standing:
+        group.lessons += [must_wait(problem, unit, options, patch) for patch in sorted(around.standing)]
+        return None
+    left = out_of_the_box(group, unit, around, options, proposal, done)
+    if left:
+        group.lessons += left
+        return None
+    chosen = {p: options[p][proposal.chosen[p]] for p in unit.patches}
+    result = realised(problem, scene, unit, around, chosen)
+    found = prospects(problem, own, around, in_place=False)
+    if not isinstance(result, Clash):
+        reasons = reasons_of(problem, own, found, chosen)
+        cost = sum(o.cost for o in chosen.values())
+        weight = sum(float(options[p].weight[proposal.chosen[p]]) for p in unit.patches)
+        return UnitFold(unit, chosen, reasons, *result, around.cluster, cost, weight)
+    for patch, lanes in found.lanes.items():
+        group.lanes[patch] += tuple(x for x in lanes if x not in group.lanes[patch])
+    group.lessons += lessons_of(group, scene, unit, around, options, proposal, done, result)
+    group.lessons += lessons_of_others(group, scene, unit, around, options, proposal, done, found)
+    return None

@@ -110,7 +110,9 @@ def lessons_of(
         held = [(p, _alike(options[p], proposal.chosen[p], clash.holds_for)) for p in patches]
         met = clash.met[k] if clash.met else ()
         strangers = [o for o in met if o in problem.unit_of and problem.unit_of[o] is not unit and o in options]
-        held += [(q, _alike(options[q], proposal.chosen[q], clash.holds_for)) for q in strangers]
+        # A stranger may get out of the way of what is dragged along by being narrowed.
+        wide = "this" if clash.holds_for == "this" else "wider windows"
+        held += [(q, _alike(options[q], proposal.chosen[q], wide)) for q in strangers]
         deciding = {problem.unit_of[q].name for q in strangers}
         for owner in met:
             deciding |= _on_the_way(scene, unit, around, owner)

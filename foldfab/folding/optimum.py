@@ -49,6 +49,9 @@ def optimal(
         floor: by unit, what it counts at least by itself.
         work: the limit, in seconds of an ordinary machine.
     """
+    if not np.isfinite(sum(floor.values())):
+        # Some unit has no choice without conflicts at all, in whatever order.
+        return known, np.inf
     folds = {f.unit.name: f for f in known.folds} if known else {}
     is_whole = set(folds) == set(floor)
     groups = neighbouring(problem, scene) if is_whole else [set(floor)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -23,7 +24,7 @@ from foldfab.folding.site import sites, slab
 from foldfab.folding.soundness import disconnected, hangs_together, rigid_patches
 from foldfab.folding.symmetry import twins
 from foldfab.folding.tree import unit_tree
-from foldfab.folding.unit_fold import UnitFold
+from foldfab.folding.unit_fold import Choice, UnitFold
 from foldfab.folding.units import decompose
 from foldfab.geometry.boxes import bounds, stacked
 from foldfab.scaffold.model import Scaffold
@@ -83,6 +84,7 @@ def _solved(scaffold: Scaffold, thickness: Thickness) -> FoldSolution:
 def _ordered(problem: Problem) -> tuple[Ordered, float]:
     """The folds of all units in their order, and what any order counts at least."""
     scene, choices = open_scene(problem), floors(problem)
+    _require_choices(problem, choices)
     ordered = greedy(problem, scene, choices)
     floor = {name: choice.weight for name, choice in choices.items()}
     if not ordered.refusals and weight(ordered) - sum(floor.values()) <= NO_MORE:
@@ -116,6 +118,17 @@ def posed(scaffold: Scaffold, thickness: Thickness) -> Problem:
     return replace(problem, twins=twins(problem))
 
 
+def _require_choices(problem: Problem, choices: Mapping[str, Choice]) -> None:
+    """Where a unit is left no choice at all, what was asked of its parts cannot be had together."""
+    for unit in problem.units:
+        asked = sorted({part.name for p in unit.patches for part in demanding(problem, p)})
+        if asked and not np.isfinite(choices[unit.name].weight):
+            raise FoldingError(
+                f"what is pinned or forbidden for {', '.join(asked)} cannot be had together: they fold in one unit, "
+                "and whatever they may do, two of them exclude each other"
+            )
+
+
 def _require_allowed(problem: Problem) -> None:
     """What the recipe pins or forbids has to leave every patch something that it can do."""
     for unit in problem.units:
@@ -128,7 +141,7 @@ def _require_allowed(problem: Problem) -> None:
         for patch in asked:
             if not np.isfinite(options[patch].weight).any():
                 names = ", ".join(part.name for part in demanding(problem, patch))
-                able = sorted({(x.variant.mechanism, x.variant.hinges) for x in own.plain[patch]})
+                able = sorted({(x.variant.mechanism, x.variant.hinges) for x in own.plain[patch] if not x.is_out})
                 told = ", ".join(
                     f"{how} with {count} hinge{'s' * (count > 1)}" if count else how for how, count in able
                 )

@@ -183,3 +183,31 @@ def fabricated(folder: Path, **changes: Any) -> Assembly:
 def contents(folder: Path) -> dict[str, bytes]:
     """By path in the folder, the bytes of each file."""
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.mark.parametrize("ordering", ["greedy", "optimal"])
+def test_what_is_pinned_forbidden_or_rigid_holds_from_the_file_to_the_facts(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], ordering: str
+) -> None:
+    """Three walls under a board: one pinned, one with what it would do forbidden, one rigid by the command line."""
+    parts: list[dict[str, Any]] = [
+        {"name": "ground", "box": {"center": [0, 0, 10], "size": [900, 300, 20]}},
+        {"name": "top", "box": {"center": [0, 0, 410], "size": [900, 300, 20]}},
+    ]
+    for name, x in (("left", -400), ("middle", 0), ("right", 400)):
+        parts.append({"name": name, "box": {"center": [x, 0, 210], "size": [20, 250, 380]}})
+    parts[2]["pin"] = {"side": "r"}
+    parts[3]["forbid"] = [{"mechanism": "in-place"}, {"mechanism": "deleted"}]
+    file = tmp_path / "walls.json"
+    file.write_text(json.dumps({"name": "walls", "direction": "-z", "parts": parts}), encoding="utf-8")
+    command = ["fold", str(file), "--ordering", ordering, "--json"]
+    assert cli.main([*command, "--rigid", "right", "--verify"]) == 0
+    facts = json.loads(capsys.readouterr().out)
+    changed = {m["patch"]: m for m in facts["modifications"]}
+    assert facts["ordering"] == ordering and changed["left"]["side"] == "r"
+    assert changed["middle"]["mechanism"] == changed["right"]["mechanism"] == "slanted"
+    # In place only, the rigid one has to be let go at its top, and the middle one has nothing left.
+    assert cli.main([*command, "--rigid", "right", "--no-slanting"]) == 1
+    refused = json.loads(capsys.readouterr().out)
+    assert "pinned or forbidden for middle leaves middle nothing" in refused["reason"]
+    assert {"with slanting allowed", "if middle is left free"} <= set(refused["advice"])

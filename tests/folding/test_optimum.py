@@ -9,9 +9,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from foldfab.errors import AbstractionError, FoldingError
+from foldfab.errors import FoldfabError, FoldingError
 from foldfab.folding.improve import weight
 from foldfab.folding.model import FoldSolution, Thickness
+from foldfab.folding.options import DELETION
 from foldfab.folding.ordering import floors, greedy
 from foldfab.folding.problem import Problem
 from foldfab.folding.scene import open_scene
@@ -109,29 +110,60 @@ def posts_and_flaps(
     return tuple(parts)
 
 
-@pytest.mark.parametrize("slanting", [True, False])
+def box_of_things(
+    rng: random.Random, board_at: Callable[..., Part], wall_at: Callable[..., Part], box: Callable[..., Part]
+) -> tuple[Part, ...]:
+    """A box with one or two flaps and tables in it."""
+    height, width = rng.choice([84, 104]), rng.choice([160, 220, 280])
+    parts = [board_at("ground", 0, width + 20, 120), board_at("ceiling", height, width + 20, 120)]
+    parts += [wall_at("l", -width / 2, 0, height, rng.choice([60, 100])), wall_at("r", width / 2, 0, height, 100)]
+    for k in range(rng.randint(1, 2)):
+        x, tall = 18 * rng.randrange(-3, 4) + 3 * k, rng.choice([30, 44])
+        if rng.random() < 0.5:
+            parts.append(box(f"p{k}", (x, rng.choice([0, -20, 20]), 2 + tall / 2), (4, rng.choice([36, 60]), tall)))
+        else:
+            parts += [wall_at(f"p{k}", x, 0, tall + 14, 50), board_at(f"t{k}", tall + 14, rng.choice([16, 40]), 50, x)]
+    return tuple(parts)
+
+
+@pytest.mark.parametrize(
+    ("make", "slanting", "seeds", "least_better"),
+    [
+        (posts_and_flaps, True, [*range(30, 50), 53, 107, 110, 170, 266, 273, 293, 296], 8),
+        (posts_and_flaps, False, [*range(25, 40), 107, 110, 170, 266, 273, 293, 296], 7),
+        (box_of_things, True, [*range(12)], 0),
+        (box_of_things, False, [*range(12, 24)], 0),
+    ],
+)
 def test_on_random_furniture_it_lies_between_its_bound_and_greedy_and_equals_brute_force(
     scaffold: Callable[..., Scaffold], board_at: Callable[..., Part], wall_at: Callable[..., Part],
-    box: Callable[..., Part], slanting: bool,
+    box: Callable[..., Part], make: Callable[..., tuple[Part, ...]], slanting: bool, seeds: list[int],
+    least_better: int,
 ) -> None:  # fmt: skip
-    compared = 0
-    for seed in range(30):
-        parts = posts_and_flaps(random.Random(seed), board_at, wall_at, box)
-        options = {"slanting": slanting, "shrink_steps": 2, "max_hinges": 1}
+    """What counts is the weight of the search: a deletion counts more than its cost."""
+    options = {"slanting": slanting, "shrink_steps": 2, "max_hinges": 1}
+    compared = better = 0
+    for seed in seeds:
+        parts = make(random.Random(seed), board_at, wall_at, box)
         try:
             made = scaffold(parts, ordering="optimal", time_limit=30.0, **options)
             best, first = solve(made), solve(scaffold(parts, ordering="greedy", **options))
-        except (AbstractionError, FoldingError):
+        except FoldfabError:
             continue
-        assert first.lower_bound <= best.cost + 1e-9, seed
-        assert best.lower_bound <= best.cost + 1e-9 and best.cost <= first.cost + 1e-9, seed
-        assert not [v for v in violations(best) if v.model != "without thickness"], seed
+        counted, greedily = counts(best), counts(first)
+        assert counted <= greedily + 1e-9 and first.lower_bound <= best.cost + 1e-9, seed
         assert best.lower_bound == pytest.approx(best.cost, abs=NO_MORE), f"{seed} is not proven"
-        thickness = Thickness(made.recipe.print.thickness, made.recipe.print.clearance)
-        found, _ = cheaper(posed(made, thickness), best.cost - 2 * NO_MORE, 300)
-        assert found is None, f"{seed}: brute force finds {found} where {best.cost} is said to be least"
-        compared += 1
-    assert compared > 10
+        assert not [v for v in violations(best) if v.model != "without thickness"], seed
+        posed_anew = posed(made, Thickness(made.recipe.print.thickness, made.recipe.print.clearance))
+        found, _ = cheaper(posed_anew, counted - 2 * NO_MORE, 1000)
+        assert found is None, f"{seed}: brute force finds {found} where {counted} is said to be least"
+        compared, better = compared + 1, better + (counted < greedily - 1e-6)
+    assert compared > 0.6 * len(seeds) and better >= least_better
+
+
+def counts(made: FoldSolution) -> float:
+    """What a solution counts in the search, preferences aside."""
+    return sum(m.cost + DELETION * m.is_deleted for m in made.modifications)
 
 
 @pytest.fixture
@@ -163,21 +195,20 @@ def test_any_limit_gives_the_same_answer_twice_and_a_fold_that_is_valid(
 ) -> None:
     options = {"shrink_steps": 2, "max_hinges": 1, "ordering": "optimal", "time_limit": work}
     first, second = (solve(scaffold(three_in_a_row, **options)) for _ in range(2))
-    assert first.lower_bound <= first.cost
+    assert first.lower_bound == 0.0 <= first.cost, "in the end it folds for nothing"
     assert first.modifications == second.modifications and first.lower_bound == second.lower_bound
     assert [s.unit for s in first.steps] == [s.unit for s in second.steps]
     assert not [v for v in violations(first) if v.model != "without thickness"]
 
 
 def test_a_stranger_that_something_dragged_along_meets_may_be_narrowed(
-    problem: Make, board_at: Callable[..., Part], wall_at: Callable[..., Part], box: Callable[..., Part]
+    problem: Make, board_at: Callable[..., Part], wall_at: Callable[..., Part]
 ) -> None:
     """The board on `low` is dragged into `mid`, whatever is left of `low`; but only into a half of `mid`."""
     parts = (
         board_at("ground", 0, 300), wall_at("high", -56, 0, 84, 60, -20), board_at("high-top", 84, 30, 60, -56, -20),
         wall_at("mid", -28, 0, 64, 36), board_at("mid-top", 64, 30, 36, -28),
         wall_at("low", -42, 0, 44, 36, -20), board_at("low-top", 44, 16, 36, -42, -20),
-        box("flap", (42, 0, 24), (4, 60, 44)),
     )  # fmt: skip
     made = problem(parts, shrink_steps=2, max_hinges=1, ordering="optimal", time_limit=60.0)
     found, bound = _ordered(made)

@@ -23,6 +23,10 @@ if TYPE_CHECKING:
 
 UNITS_PER_COST = 1e8
 """Costs are rounded to integers of this resolution."""
+POSING = 2e-3
+"""Charge for handing a program to the engine, s; its deterministic time does not count that."""
+READING = 4e-6
+"""Charge for each literal of a conflict that it reads, s."""
 
 Order = tuple[str, str]
 """Names of two units: the first one folds before the second."""
@@ -67,6 +71,7 @@ class Master:
 
         self.model = cp_model.CpModel()
         self.worth = {p: sorted(keep) for p, keep in worth.items()}
+        self.literals = 0
         self.on = {(p, i): self.model.new_bool_var(f"{p}/{i}") for p, keep in self.worth.items() for i in keep}
         for keep_patch, keep in self.worth.items():
             self.model.add_exactly_one(self.on[keep_patch, i] for i in keep)
@@ -124,9 +129,11 @@ class Master:
         self.solver.parameters.random_seed = 0
         # The relaxation of conflicts between pairs is too weak to pay for itself.
         self.solver.parameters.linearization_level = 0
+        # Nor does probing: the programs are small, and solved again after every few cuts.
+        self.solver.parameters.cp_model_probing_level = 0
         self.solver.parameters.max_deterministic_time = work
         status = self.solver.solve(self.model)
-        spent = float(self.solver.response_proto.deterministic_time)
+        spent = float(self.solver.response_proto.deterministic_time) + POSING + READING * self.literals
         if status == cp_model.INFEASIBLE:
             return None, np.inf, spent
         bound = float(self.solver.best_objective_bound) / UNITS_PER_COST
@@ -141,6 +148,7 @@ class Master:
         for i in self.worth[p]:
             others = columns[excluded[i, columns]] if len(columns) else columns
             if len(others):
+                self.literals += 1 + len(others)
                 self.model.add_at_most_one([self.on[p, i], *(self.on[q, int(j)] for j in others)])
 
     def _is_before(self, first: str, second: str) -> Any:

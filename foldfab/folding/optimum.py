@@ -30,7 +30,7 @@ from foldfab.folding.unit_fold import UnitFold
 NO_MORE = 1e-5
 """What preferences between options of equal cost may add up to."""
 PLAYING = 3e-3
-"""Charge for a unit that is played through, s."""
+"""Charge for a patch that is played through, s."""
 BUILDING = 2e-2
 """Charge for a constraint program that is built, s."""
 SHARE = 0.5
@@ -151,9 +151,9 @@ def _solved(group: Group, work: float) -> tuple[tuple[UnitFold, ...] | None, flo
             bound = max(bound, min(least, group.known))
             if proposal is None or least >= group.known - NO_MORE:
                 return best, bound
-            before = len(group.problem.plays)
+            before = sum(group.problem.plays)
             folds, holds = played(group, options, proposal)
-            work -= PLAYING * (1 + len(group.problem.plays) - before)
+            work -= PLAYING * (1 + sum(group.problem.plays) - before)
             if folds is not None and _counted(folds) < group.known - NO_MORE:
                 best, group.known = folds, _counted(folds)
             if holds and folds is not None and proposal.bound >= _counted(folds) - NO_MORE:

@@ -54,8 +54,8 @@ class Problem:
     """Solutions of units, by all that they depend on."""
     hopeless: dict[Unit, str] = field(default_factory=dict)
     """Units that cannot fold wherever they stand, and why."""
-    plays: list[str] = field(default_factory=list)
-    """The names of the units that were played through, each time once: a measure of work."""
+    plays: list[int] = field(default_factory=list)
+    """How many patches were played through, unit by unit: a measure of work."""
     extents: dict[bytes, tuple[float, float]] = field(default_factory=dict)
     """By direction, between which coordinates the open furniture lies, mm."""
 

@@ -62,7 +62,7 @@ def _played(
     chains: tuple[Chain, ...], way: Mapping[str, float],
 ) -> tuple[tuple[Chain, ...], Motion] | Clash:  # fmt: skip
     """The chains with their motion, or what meets while they fold."""
-    problem.plays.append(unit.name)
+    problem.plays.append(len(unit.patches))
     is_slanted = any(c.mechanism == "slanted" and c.far is not None for c in chains)
     motion = (
         press.slanted(unit.bases, chains)

@@ -110,20 +110,24 @@ def advanced(scene: Scene, unit: Unit, chosen: Mapping[str, Option], chains: Ite
 def shown(scene: Scene, unit: Unit, chains: Iterable[Chain], *, is_folded: bool) -> Scene:
     """The scene with the unit's patches as those chains, open or folded; its other patches are gone."""
     by_patch = {c.patch: c for c in chains}
-    solids, places = list(scene.solids), dict(scene.places)
-    low, high, base = scene.low, scene.high, scene.base.copy()
-    fresh: list[Solid] = []
+    solids, places, base = list(scene.solids), dict(scene.places), scene.base.copy()
+    fresh: dict[int, Solid] = {}
     for patch in unit.patches:
-        base[list(places[patch])] = -1
         made = _chain_solids(scene, by_patch[patch], is_folded=is_folded) if patch in by_patch else ()
-        start = len(solids) + len(fresh)
-        places[patch] = tuple(range(start, start + len(made)))
-        fresh += made
-    solids += fresh
-    if fresh:
-        low = np.concatenate([low, [s.low for s in fresh]])
-        high = np.concatenate([high, [s.high for s in fresh]])
-        base = np.concatenate([base, [s.base for s in fresh]])
+        free = list(places[patch])
+        base[free] = -1
+        # Places are used again, so that a scene does not grow with every step.
+        more = len(made) - len(free)
+        start = len(solids)
+        solids += made[len(free) :] if more > 0 else ()
+        slots = [*free, *range(start, start + max(more, 0))]
+        places[patch] = tuple(slots[: len(made)])
+        fresh.update(zip(places[patch], made, strict=True))
+    grown = len(solids) - len(base)
+    low, high = np.resize(scene.low, (len(solids), 3)), np.resize(scene.high, (len(solids), 3))
+    base = np.concatenate([base, np.full(grown, -1)])
+    for place, solid in fresh.items():
+        solids[place], low[place], high[place], base[place] = solid, solid.low, solid.high, solid.base
     return replace(scene, solids=tuple(solids), places=places, low=low, high=high, base=base)
 
 

@@ -65,11 +65,13 @@ def solve(scaffold: Scaffold) -> FoldSolution:
 
 def _solved(scaffold: Scaffold, thickness: Thickness) -> FoldSolution:
     problem = posed(scaffold, thickness)
+    # First of all, so that copies of a unit get all the lanes that its first one needed.
+    choices = floors(problem)
     _require_variants(problem)
     _require_allowed(problem)
     least: float | None = None
     for _ in range(REHEARSALS):
-        ordered, bound = _ordered(problem)
+        ordered, bound = _ordered(problem, choices)
         # What a rehearsal forbids belongs to one order; the bound is over all options.
         least = bound if least is None else least
         bound = min(bound, least)
@@ -77,13 +79,14 @@ def _solved(scaffold: Scaffold, thickness: Thickness) -> FoldSolution:
         if met is None:
             return solution(problem, bound, ordered)
         problem = replace(problem, banned=problem.banned | {met}, repertoires={}, poses={}, solved={}, hopeless={})
+        choices = floors(problem)
     told = ", ".join(sorted({patch for patch, _ in problem.banned}))
     raise FoldingError(f"no folding solution found: {told} stay in the way of what folds before; try another thickness")
 
 
-def _ordered(problem: Problem) -> tuple[Ordered, float]:
-    """The folds of all units in their order, and what any order counts at least."""
-    scene, choices = open_scene(problem), floors(problem)
+def _ordered(problem: Problem, choices: Mapping[str, Choice]) -> tuple[Ordered, float]:
+    """The folds of all units in their order, and what any order counts at least; `choices` is the cheapest of each."""
+    scene = open_scene(problem)
     _require_choices(problem, choices)
     ordered = greedy(problem, scene, choices)
     floor = {name: choice.weight for name, choice in choices.items()}
@@ -92,9 +95,8 @@ def _ordered(problem: Problem) -> tuple[Ordered, float]:
     if problem.options.ordering == "greedy":
         bound = sum(floor.values()) if ordered.refusals else lower_bound(problem, scene, ordered, floor)
     else:
-        before = len(problem.plays)
         known = None if ordered.refusals else improved(problem, ordered, choices)
-        work = problem.options.time_limit - PLAYING * (len(problem.plays) - before)
+        work = problem.options.time_limit - PLAYING * sum(problem.plays)
         found, bound = optimal(problem, scene, known, floor, work)
         ordered = found or ordered
     if ordered.refusals:

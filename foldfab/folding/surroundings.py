@@ -95,8 +95,7 @@ def _near(own: Repertoire, low: Array, high: Array, group: Indices, is_other: Bo
     """(n,) which solids are near anything that the unit may sweep."""
     least = np.array([own.reach[b][0] for b in own.unit.bases])[group]
     most = np.array([own.reach[b][1] for b in own.unit.bases])[group]
-    found: Bools = is_other & (low <= most).all(1) & (high >= least).all(1)
-    return found
+    return is_other & _reach_into(low, high, least, most)
 
 
 def _across(
@@ -133,9 +132,9 @@ def _brushed(own: Repertoire, low: Array, high: Array, group: Indices, is_other:
         return a[:0]
     least, most = np.min([d.min(0) for d in drags], 0), np.max([d.max(0) for d in drags], 0)
     # Few of either side come near the other one at all.
-    a = a[(low[a] <= high[b].max(0) + most).all(1) & (high[a] >= low[b].min(0) + least).all(1)]
+    a = a[_reach_into(low[a], high[a], low[b].min(0) + least, high[b].max(0) + most)]
     if len(a):
-        b = b[(low[b] + least <= high[a].max(0)).all(1) & (high[b] + most >= low[a].min(0)).all(1)]
+        b = b[_reach_into(low[b], high[b], low[a].min(0) - most, high[a].max(0) - least)]
     p, q = near_pairs((low[a], high[a]), (low[b] + least, high[b] + most))
     found: Indices = np.unique(np.concatenate([a[p], b[q]]))
     return found
@@ -146,7 +145,15 @@ def _facing(low: Array, high: Array, many: Indices, others: Indices, rise: float
     if not len(others):
         return many[:0]
     least, most = low[others].min(0), high[others].max(0)
-    found: Indices = many[(low[many] <= most).all(1) & (high[many] + [0, 0, rise] >= least).all(1)]
+    return many[_reach_into(low[many], high[many], least - [0, 0, rise], most)]
+
+
+def _reach_into(low: Array, high: Array, least: Array, most: Array) -> Bools:
+    """(n,) which bounds (n, 3) reach into some others, (3,) or (n, 3)."""
+    # Axis by axis: that takes a third of the time of a reduction over rows of three.
+    found = np.ones(len(low), dtype=bool)
+    for axis in range(3):
+        found &= (low[:, axis] <= most[..., axis]) & (high[:, axis] >= least[..., axis])
     return found
 
 

@@ -82,6 +82,14 @@ def descent(chain: Chain) -> tuple[Array, Array, int]:
     return _descent(chain.shape)
 
 
+def turn(chain: Chain) -> float | None:
+    """The progress at which a leaning accordion turns from a two-bar linkage to a zig-zag; None where it does not lean.
+
+    Its speed leaps there, so it has to be sampled at that very place.
+    """
+    return _turn(chain.shape)
+
+
 def ends(chain: Chain) -> Array:
     """(3,) how far the last axis comes from open to folded, mm."""
     first, last = _ends(chain.shape)
@@ -98,9 +106,16 @@ def start(chain: Chain) -> Array:
 @lru_cache(REMEMBERED)
 def _descent(shape: Shape) -> tuple[Array, Array, int]:
     s = np.linspace(0.0, 1.0, TABLE)
+    place = _turn(shape)
+    s = np.unique(np.append(s, place)) if place is not None else s
     height = reach(shape, s)[:, 1]
     height -= height[0]
     return s, height, int(np.argmax(height))
+
+
+def _turn(shape: Shape) -> float | None:
+    lean = abs(shape.lean)
+    return lean / (QUARTER + lean) if shape.comes_down and lean > 0 and len(shape.lengths) > 2 else None
 
 
 @lru_cache(REMEMBERED)

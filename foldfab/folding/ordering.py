@@ -20,6 +20,7 @@ from foldfab.folding.congruent import repertoire
 from foldfab.folding.problem import Problem
 from foldfab.folding.scene import Scene, advanced
 from foldfab.folding.surroundings import Surroundings, depends_on, look
+from foldfab.folding.symmetry import bound
 from foldfab.folding.unit_fold import (
     Choice,
     Refusal,
@@ -125,7 +126,8 @@ def _look_again(state: _State, unit: Unit) -> None:
     state.waits[unit.name] = {state.problem.unit_of[p].name for p in around.standing}
     for name in state.sees.get(unit.name, ()):
         state.seen_by[name].discard(unit.name)
-    state.sees[unit.name] = depends_on(state.problem, unit, around) | state.beside[unit.name]
+    twins = {state.problem.unit_of[t.patch].name for p in unit.patches if (t := state.problem.twins.get(p))}
+    state.sees[unit.name] = depends_on(state.problem, unit, around) | state.beside[unit.name] | twins - {unit.name}
     for name in state.sees[unit.name]:
         state.seen_by.setdefault(name, set()).add(unit.name)
 
@@ -133,7 +135,8 @@ def _look_again(state: _State, unit: Unit) -> None:
 def _guessed(state: _State, scene: Scene, unit: Unit, around: Surroundings) -> float:
     """What a unit counts where it has looked around: that of its cheapest choice while nothing is in its way."""
     own, cheapest = repertoire(state.problem, unit), state.floor[unit.name]
-    if not is_solved(state.problem, around) and has_room(state.problem, own, around, cheapest):
+    is_free = not any(bound(state.problem, scene.chosen, patch) for patch in unit.patches)
+    if is_free and not is_solved(state.problem, around) and has_room(state.problem, own, around, cheapest):
         return cheapest.weight
     return min(estimated(state.problem, scene, own, around), REFUSED)
 

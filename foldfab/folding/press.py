@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from foldfab.folding.mechanism import descent, peak, reach
+from foldfab.folding.mechanism import descent, peak, reach, turn
 from foldfab.folding.model import Chain
 from foldfab.geometry.arrays import Array, Indices
 
@@ -30,6 +30,8 @@ SETTLED = 4
 """Chains that snap differently move alike again when the leader has come this many times as far as to its snap."""
 CLIMB = 10
 """Samples up to the snap."""
+TURNED = np.array([0.0, 0.02, 0.04, 0.07, 0.1])
+"""How far beyond the turn of a leaning accordion more samples are taken: it hurries there."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -157,6 +159,7 @@ def _section(i: int, levels: list[float], way: Mapping[str, float], held: list[C
     down = np.linspace(at, end, SAMPLES + 1)
     if crest > 0:
         down = np.unique(np.concatenate([down, np.linspace(at, min(at + (SETTLED - 1) * crest, end), 4 * SETTLED)]))
+    down = np.unique(np.concatenate([down, _turns(leader, held, way, at, end)]))
     s = np.concatenate([at * climb, down])
     climb = np.concatenate([climb, 1 + (down - at) / crest if crest > 0 else np.full(len(down), np.inf)])
     height = reach(leader, s)[:, 1]
@@ -166,6 +169,20 @@ def _section(i: int, levels: list[float], way: Mapping[str, float], held: list[C
         press += (shared - rise) * np.where(climb < 1, climb**2 * (3 - 2 * climb), _fade(climb))
     path = float(leader.lengths.max()) * np.pi / 2 * (end - begin) * len(leader.lengths)
     return _Section(leader, s, press, climb, path)
+
+
+def _turns(leader: Chain, held: list[Chain], way: Mapping[str, float], at: float, end: float) -> Array:
+    """Progress of the leader, between two, at which chains turn from linkage to zig-zag and soon after."""
+    places = [np.zeros(0)]
+    for chain in held:
+        own = turn(chain)
+        if own is not None and chain.far is not None:
+            wanted = own + TURNED
+            drop = reach(chain, np.zeros(1))[0, 1] - reach(chain, wanted)[:, 1]
+            later = way[leader.far or ""] - way[chain.far]
+            places.append(wanted if chain is leader else follow_down(leader, later + drop))
+    found = np.concatenate(places)
+    return found[(at < found) & (found < end)]
 
 
 def _fade(climb: Array) -> Array:

@@ -28,6 +28,7 @@ _OPTIONS: tuple[tuple[str, str, str], ...] = (
     ("--scale", "S", 'print size over true size: "fit", a number, or a ratio such as 1:5'),
     ("--clearance", "MM", "gap that a hinge is printed with, 0.15 to 1"),
     ("--thickness", "MM", "thickness of plates and panels, 2 to 20"),
+    ("--base-thickness", "MM", "thickness of base plates, where it is another"),
     ("--alpha", "A", "weight of inserted hinges (1) against shrinking (0)"),
     ("--max-hinges", "N", "most hinges that may be inserted in one patch, 1 to 9"),
     ("--shrink-steps", "N", "how many pieces a patch is cut into for shrinking, 1 to 20"),
@@ -35,7 +36,7 @@ _OPTIONS: tuple[tuple[str, str, str], ...] = (
     ("--collisions", "C", "swept: shapes that meet in time; or regions: the paper's own test"),
     ("--time-limit", "SECONDS", "of work on an ordinary machine, up to 3600"),
 )
-_SWITCHES = ("slanting", "stay_in_box", "symmetry")
+_SWITCHES = ("slanting", "stay_in_box", "symmetry", "own_thickness")
 _REPEATED = (("--rigid", "NAME", "a part that must not get a hinge in its middle; may be given again for others"),)
 
 
@@ -268,6 +269,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--no-slanting", dest="slanting", action="store_false", default=None, help="fold in place only")
     group.add_argument("--stay-in-box", action="store_true", default=None, help="stay within the bounding box")
     group.add_argument("--symmetry", action="store_true", default=None, help="treat mirrored parts alike")
+    group.add_argument("--own-thickness", action="store_true", default=None, help="parts as thick as they are, or more")
 
 
 def _how_many(text: str) -> int:

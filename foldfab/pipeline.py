@@ -205,9 +205,10 @@ def _has_scaffold(recipe: Recipe, axis: tuple[int, int, int], scale: float) -> b
 def _fitting_scale(recipe: Recipe, direction: Array) -> float:
     """The largest scale at which the open furniture (printed folded: its footprint) fits the bed, either way round."""
     size = _size(recipe)
-    bed = np.array(recipe.print.printer.build_volume) - MARGIN_THICKNESSES * recipe.print.thickness
+    thickest = max(recipe.print.thickness, recipe.print.base_thickness or 0.0)
+    bed = np.array(recipe.print.printer.build_volume) - MARGIN_THICKNESSES * thickest
     if (bed <= 0).any():
-        raise FoldingError(f"the {recipe.print.printer.name} is too small for plates of {recipe.print.thickness:g} mm")
+        raise FoldingError(f"the {recipe.print.printer.name} is too small for plates of {thickest:g} mm")
     if recipe.print.posture == "folded":
         from foldfab.geometry.rotation import upright
 

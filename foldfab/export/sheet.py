@@ -73,7 +73,7 @@ def _print(assembly: Assembly) -> dict[str, Any]:
         "posture": assembly.posture,
         "direction": _unit(scaffold.direction),
         "scale": float(scaffold.scale),
-        "thickness_mm": _length(max([thickness.panel, *(c.panel for c in assembly.solution.chains)])),
+        "thickness_mm": _length(max((c.panel for c in assembly.solution.chains), default=thickness.panel)),
         "clearance_mm": _length(thickness.gap),
         "printer": {"name": printer.name, "build_volume_mm": _lengths(np.array(printer.build_volume))},
         "print_files": [f"{scaffold.recipe.name}.3mf"],

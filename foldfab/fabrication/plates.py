@@ -18,7 +18,7 @@ GROWTH = (0.0, 0.2, 0.5, 1.0, 2.0)
 RIM = 0.4
 """How far the plate reaches beyond a foot, mm."""
 ROOT_SHARE = 0.5
-"""How deep a foot reaches into its plate, as a share of K."""
+"""How deep a foot reaches into its plate, as a share of its own thickness or the plate's."""
 
 
 def plate(base: BasePatch, chains: tuple[Chain, ...], thickness: Thickness) -> tuple[Solid, bool]:
@@ -41,7 +41,7 @@ def _members(base: BasePatch, thickness: Thickness) -> Boxes:
     for i, outline in enumerate(base.outlines):
         if outline.extent is not None:
             middle, rise = sum(outline.extent) / 2, (outline.extent[1] - outline.extent[0]) / 2
-            rise = max(rise, thickness.panel / 2) + RIM
+            rise = max(rise, thickness.of(base.thickness).panel / 2) + RIM
             low, high = max(middle - rise, face.bottom), min(middle + rise, face.top)
             center[i, 2], half[i, 2] = (low + high) / 2, (high - low) / 2
     return Boxes(center, boxes.axes, half)
@@ -74,7 +74,7 @@ def _mount(chain: Chain, base: BasePatch, thickness: Thickness, end: int) -> tup
     span, hinge = (chain.span, chain.hinge_spans[0]) if end == 0 else (-chain.span[::-1], -chain.hinge_spans[-1][::-1])
     marks = knuckles(hinge, thickness)
     pad, half = chain.pads[end], thickness.panel / 2
-    depth = thickness.axis_height + pad + ROOT_SHARE * thickness.panel
+    depth = thickness.axis_height + pad + ROOT_SHARE * min(thickness.panel, face.top - face.bottom)
     solid, holes = carrier(marks, thickness, 0.0, 0.0)
     solid += feet(marks, thickness, depth)
     if pad > 0:

@@ -29,7 +29,8 @@ class Face:
 
 def faces(base: BasePatch, thickness: Thickness) -> Face:
     """The faces of a base's plate, K/2 beyond its lowest and highest member."""
-    return Face(base.bottom - thickness.panel / 2, base.top + thickness.panel / 2)
+    half = thickness.of(base.thickness).panel / 2
+    return Face(base.bottom - half, base.top + half)
 
 
 def base_boxes(base: BasePatch, thickness: Thickness) -> Boxes:
@@ -41,7 +42,8 @@ def base_boxes(base: BasePatch, thickness: Thickness) -> Boxes:
     axes[:, 0, :2] = [o.along for o in base.outlines]
     axes[:, 1, :2] = [(-o.along[1], o.along[0]) for o in base.outlines]
     axes[:, 2, 2] = 1.0
-    half = np.array([[*np.maximum(o.half, thickness.panel / 2), (face.top - face.bottom) / 2] for o in base.outlines])
+    least = thickness.of(base.thickness).panel / 2
+    half = np.array([[*np.maximum(o.half, least), (face.top - face.bottom) / 2] for o in base.outlines])
     return Boxes(center, axes, half)
 
 

@@ -56,7 +56,7 @@ def variants(site: Site, options: FoldOptions, thickness: Thickness, *, may_slan
     if is_t or (may_slant and options.slanting):
         found = [Variant("slanted", 0, side) for side in sides] + found
     span = window_span(site, (0, options.shrink_steps), options.shrink_steps, thickness)
-    return tuple(v for v in found if span is not None and _lengths(site, v, thickness) is not None)
+    return tuple(v for v in found if span is not None and _lengths(site, v, thickness.of(site.panel)) is not None)
 
 
 def windows(steps: int) -> tuple[tuple[int, int], ...]:
@@ -75,6 +75,7 @@ def window_span(site: Site, window: tuple[int, int], steps: int, thickness: Thic
 
     A whole patch narrower than a hinge is widened to it. Two windows that meet at a cut are the gap apart.
     """
+    thickness = thickness.of(site.panel)
     low, high = (float(edge[0]) for edge in _extents(site, (window,), steps, thickness))
     if high - low >= thickness.hinge_width:
         return np.array([low, high])
@@ -87,13 +88,13 @@ def window_span(site: Site, window: tuple[int, int], steps: int, thickness: Thic
 def too_narrow(site: Site, many: tuple[tuple[int, int], ...], steps: int, thickness: Thickness) -> Bools:
     """Which windows (n,) are too narrow for a hinge; the whole patch never is."""
     low, high = _extents(site, many, steps, thickness)
-    found: Bools = (high - low < thickness.hinge_width) & np.array([w != (0, steps) for w in many])
+    found: Bools = (high - low < thickness.of(site.panel).hinge_width) & np.array([w != (0, steps) for w in many])
     return found
 
 
 def chain(site: Site, variant: Variant, span: Array, thickness: Thickness) -> Chain | None:
     """The thick chain of a variant with the given extent, or None where its panels would be too short."""
-    thickness = thickness.of(thickness.panel + variant.extra)
+    thickness = thickness.of(site.panel + variant.extra)
     lengths = _lengths(site, variant, thickness)
     if lengths is None or float(np.ptp(span)) < thickness.hinge_width - 1e-9:
         return None

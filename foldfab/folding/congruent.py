@@ -63,7 +63,7 @@ def pose(problem: Problem, unit: Unit) -> Pose:
     seen = {}
     for s in sites:
         numbers = [s.foot - origin, s.across, s.along, s.rise, s.span, np.array(s.held).ravel()]
-        numbers.append(np.array([s.lean, s.clear, s.patch.width, s.patch.length]))
+        numbers.append(np.array([s.lean, s.clear, s.patch.width, s.patch.length, s.panel]))
         banned = tuple(sorted(v for p, v in problem.banned if p == s.patch.name))
         ends = (place[s.anchor], place.get(s.far, -1), s.patch.hingeable, round(s.importance, 12), banned)
         seen[s.patch.name] = (_rounded(np.concatenate(numbers)), ends)

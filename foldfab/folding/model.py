@@ -32,9 +32,9 @@ class Thickness:
     gap: float
     """g, the printed clearance, mm."""
 
-    def of(self, panel: float) -> Thickness:
-        """The same clearance around panels of another thickness, mm."""
-        return Thickness(panel, self.gap)
+    def of(self, panel: float | None) -> Thickness:
+        """The same clearance around panels of another thickness, mm; itself where they have none of their own."""
+        return self if panel is None else Thickness(panel, self.gap)
 
     @property
     def axis_height(self) -> float:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from foldfab.folding import anatomy, press
-from foldfab.folding.problem import Problem, clear_height, clearances, levels
+from foldfab.folding.problem import Problem, clear_height, clearances, held, levels
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Array, Bools
 from foldfab.geometry.boxes import bounds
@@ -37,9 +37,8 @@ class Nominal:
 
 def nominal(problem: Problem, unit: Unit) -> Nominal:
     """The nominal fold of a unit; a unit of T-scaffolds has one section in which its base stands still."""
-    stack = problem.thickness.stack(2, has_upper_base=True)
     clear = clearances(problem, unit)
-    least = {**_plates_apart(problem, unit), **dict.fromkeys(clear, stack)}
+    least = {**_plates_apart(problem, unit), **{pair: _least_stack(problem, unit, pair) for pair in clear}}
     heights = {pair: clear_height(problem, *pair) for pair in least}
     way = press.ways(unit.bases, least, heights, levels(problem, unit))
     marks = sorted({round(w, 6) for w in way.values()} | {0.0}, reverse=True)
@@ -48,6 +47,12 @@ def nominal(problem: Problem, unit: Unit) -> Nominal:
     turn = 1 - np.cos(np.linspace(0.0, np.pi / 2, FRAMES))
     level = np.array([a + (b - a) * turn for a, b in itertools.pairwise(marks)])
     return Nominal({b: np.minimum(level, way[b]) - way[b] for b in unit.bases})
+
+
+def _least_stack(problem: Problem, unit: Unit, pair: tuple[str, str]) -> float:
+    """How high the chains between two bases are at least when folded, mm."""
+    panel = min(site.panel for site in held(problem, unit) if (site.anchor, site.far) == pair)
+    return problem.thickness.of(panel).stack(2, has_upper_base=True)
 
 
 def _plates_apart(problem: Problem, unit: Unit) -> dict[tuple[str, str], float]:

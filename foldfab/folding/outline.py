@@ -24,7 +24,7 @@ def leaves_outline(problem: Problem, chain: Chain, beside: tuple[float, float]) 
     if chain.mechanism != "in-place":
         return False
     low, high = problem.extent_along(chain.across)
-    slack = max(_skin(problem.thickness), EXPANSION * (high - low))
+    slack = max(_skin(problem.thickness.of(chain.panel)), EXPANSION * (high - low))
     return beside[0] < low - slack or beside[1] > high + slack
 
 
@@ -43,7 +43,7 @@ def leaves_box(
         carried: (frames, 3) how far that frame has been carried since the open posture.
     """
     least, most = problem.outline
-    slack = _skin(problem.thickness)
+    slack = _skin(problem.thickness.of(max(site.panel for site in problem.sites.values())))
     if (low + carried < least - slack).any() or (high + carried > most + slack).any():
         return True
     for base, (near, far) in clusters.items():

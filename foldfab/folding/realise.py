@@ -51,7 +51,7 @@ def realised(
     for by_thickness in (True, False):
         made = _balanced(problem, unit, around, chosen, by_thickness=by_thickness)
         result = made if isinstance(made, Clash) else _played(problem, unit, around, chosen, *made)
-        is_thicker = not isinstance(made, Clash) and any(c.panel > problem.thickness.panel for c in made[0])
+        is_thicker = not isinstance(made, Clash) and any(c.panel > problem.sites[c.patch].panel for c in made[0])
         if not isinstance(result, Clash) or not is_thicker:
             break
     return result
@@ -70,10 +70,12 @@ def _played(
         else press.in_place(unit.bases, way, chains, problem.thickness.gap)
     )
     for chain in chains:
-        if np.abs(motion.play[chain.patch]).max() > press.play_limit(chain, problem.thickness.gap):
+        worst, limit = float(np.abs(motion.play[chain.patch]).max()), press.play_limit(chain, problem.thickness.gap)
+        if worst > limit:
             beside = _most_unlike(chain, chains, way)
             blamed = (chain.patch, beside) if beside else tuple(chosen)
-            return Clash((blamed,), f"{chain.patch} cannot follow {beside or 'its unit'}", holds_for="any window")
+            text = f"{chain.patch} cannot follow {beside or 'its unit'}: its hinges would have to give {worst:.2f} mm"
+            return Clash((blamed,), f"{text}, and give {limit:.2f} mm", holds_for="any window")
     met = clashes(unit, problem.tree.number, chains, motion, around, problem.thickness)
     if met:
         (first, second), time = next(iter(met.items()))
@@ -120,7 +122,7 @@ def _balanced(
         assert variant is not None
         if site.far is not None:
             slack = clear[site.anchor, site.far] - (way[site.far] - way[site.anchor]) - stacks[patch]
-            variant = _filled(variant, max(slack, 0.0), thick.panel, by_thickness=by_thickness)
+            variant = _filled(variant, max(slack, 0.0), site.panel, by_thickness=by_thickness)
         span = basic.window_span(site, chosen[patch].window, problem.options.shrink_steps, thick)
         chain = basic.chain(site, variant, span, thick) if span is not None else None
         if chain is None or sum(variant.pads) > PAD_SHARE * site.clear:
@@ -146,8 +148,9 @@ def _filled(variant: Variant, slack: float, panel: float, *, by_thickness: bool)
 
 
 def _stack(problem: Problem, patch: str, variant: Variant) -> float:
-    is_held = problem.sites[patch].far is not None
-    return problem.thickness.stack(variant.hinges + 1, has_upper_base=is_held) + sum(variant.pads)
+    site = problem.sites[patch]
+    thick = problem.thickness.of(site.panel)
+    return thick.stack(variant.hinges + 1, has_upper_base=site.far is not None) + sum(variant.pads)
 
 
 def _stays_connected(problem: Problem, scene: Scene, unit: Unit, chosen: Mapping[str, Option]) -> bool:

@@ -267,7 +267,8 @@ def upright(height: Array) -> Array:
 
 
 def _reach(problem: Problem, own: Repertoire) -> dict[str, tuple[Array, Array]]:
-    margin = ROOM_THICKNESSES * (problem.thickness.panel + problem.thickness.gap)
+    thickest = max(problem.sites[p].panel for p in own.unit.patches)
+    margin = ROOM_THICKNESSES * (thickest + problem.thickness.gap)
     found = {b: (np.full(3, np.inf), np.full(3, -np.inf)) for b in own.unit.bases}
     for section in range(own.nominal.sections):
         straight = [x for x in own.lanes if x.drag is None]

@@ -50,6 +50,8 @@ class Site:
     """(2,) extent along `along` that neighbours leave free, mm."""
     held: tuple[tuple[float, float], tuple[float, float]]
     """Extent along `along` that the anchor and the far base cover, mm."""
+    panel: float
+    """K of its panels, mm."""
 
 
 def sites(scaffold: Scaffold, thickness: Thickness) -> tuple[Site, ...]:
@@ -68,7 +70,7 @@ def slab(site: Site, thickness: Thickness) -> Boxes:
     reach = (length - gap * (1 if site.far is None else 2)) / 2
     center = site.foot + direction * (gap + reach) + site.along * float(site.span.mean())
     normal = cross(site.along, direction)
-    half = np.array([[thickness.panel / 2, float(np.ptp(site.span)) / 2, max(reach, 0.0)]])
+    half = np.array([[site.panel / 2, float(np.ptp(site.span)) / 2, max(reach, 0.0)]])
     return Boxes(center[None], np.stack([normal, site.along, direction])[None], half)
 
 
@@ -89,7 +91,7 @@ def _site(patch: Patch, importance: float, plates: dict[str, _Plate], thickness:
     covered = tuple(_covered(plates[b], foot, along, thickness) if b else (-half, half) for b in (anchor, far))
     return Site(
         patch, importance, anchor, far, across, along, rise, lean, foot, float(clear),
-        np.array([-half, half]), (covered[0], covered[1]),
+        np.array([-half, half]), (covered[0], covered[1]), thickness.of(patch.thickness).panel,
     )  # fmt: skip
 
 
@@ -136,7 +138,7 @@ def _trimmed_pair(a: Site, b: Site, thickness: Thickness) -> tuple[Site, Site]:
         return a, b
     short_a, short_b = _trimmed(a, second, b, thickness), _trimmed(b, first, a, thickness)
     lost_a, lost_b = (float(np.ptp(old.span) - np.ptp(new.span)) for old, new in ((a, short_a), (b, short_b)))
-    if min(lost_a, lost_b) > EDGE_THICKNESSES * thickness.panel + 3 * thickness.gap:
+    if min(lost_a, lost_b) > EDGE_THICKNESSES * max(a.panel, b.panel) + 3 * thickness.gap:
         return a, b
     share_a, share_b = lost_a / float(np.ptp(a.span)), lost_b / float(np.ptp(b.span))
     return (short_a, b) if (share_a, a.patch.area) <= (share_b, b.patch.area) else (a, short_b)
@@ -147,7 +149,7 @@ def _trimmed(site: Site, other: Boxes, neighbour: Site, thickness: Thickness) ->
     middle = float((other.center[0] - site.foot) @ site.along)
     reach = float(np.abs(other.axes[0] @ site.along) @ other.half[0])
     flush = abs(site.across @ neighbour.across) > SIDE_BY_SIDE
-    room = thickness.gap if flush else 1.5 * thickness.gap + thickness.panel / 2 + thickness.gap
+    room = thickness.gap if flush else 1.5 * thickness.gap + neighbour.panel / 2 + thickness.gap
     low, high = float(site.span[0]), float(site.span[1])
     keep_low, keep_high = middle - reach - room - low, high - (middle + reach + room)
     if keep_low >= keep_high:

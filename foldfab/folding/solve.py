@@ -9,19 +9,16 @@ import numpy as np
 
 from foldfab.errors import FoldingError
 from foldfab.folding import anatomy, basic
-from foldfab.folding.congruent import repertoire
+from foldfab.folding.demands import require_allowed, require_choices, require_variants
 from foldfab.folding.improve import improved, weight
 from foldfab.folding.model import FoldSolution, Modification, Step, Thickness
 from foldfab.folding.optimum import NO_MORE, PLAYING, lower_bound, optimal
-from foldfab.folding.options import options_of
 from foldfab.folding.ordering import Ordered, floors, greedy, travel
-from foldfab.folding.problem import Problem, demanding
-from foldfab.folding.prospects import unhindered
+from foldfab.folding.problem import Problem
 from foldfab.folding.rehearsal import first_clash
-from foldfab.folding.repertoire import extend
 from foldfab.folding.scene import open_scene
 from foldfab.folding.site import sites, slab
-from foldfab.folding.soundness import disconnected, hangs_together, rigid_patches
+from foldfab.folding.soundness import disconnected, rigid_patches
 from foldfab.folding.symmetry import twins
 from foldfab.folding.tree import unit_tree
 from foldfab.folding.unit_fold import Choice, UnitFold
@@ -67,8 +64,8 @@ def _solved(scaffold: Scaffold, thickness: Thickness) -> FoldSolution:
     problem = posed(scaffold, thickness)
     # First of all, so that copies of a unit get all the lanes that its first one needed.
     choices = floors(problem)
-    _require_variants(problem)
-    _require_allowed(problem)
+    require_variants(problem)
+    require_allowed(problem)
     least: float | None = None
     for _ in range(REHEARSALS):
         ordered, bound = _ordered(problem, choices)
@@ -87,7 +84,7 @@ def _solved(scaffold: Scaffold, thickness: Thickness) -> FoldSolution:
 def _ordered(problem: Problem, choices: Mapping[str, Choice]) -> tuple[Ordered, float]:
     """The folds of all units in their order, and what any order counts at least; `choices` is the cheapest of each."""
     scene = open_scene(problem)
-    _require_choices(problem, choices)
+    require_choices(problem, choices)
     ordered = greedy(problem, scene, choices)
     floor = {name: choice.weight for name, choice in choices.items()}
     if not ordered.refusals and weight(ordered) - sum(floor.values()) <= NO_MORE:
@@ -118,57 +115,6 @@ def posed(scaffold: Scaffold, thickness: Thickness) -> Problem:
         {base.name: anatomy.faces(base, thickness) for base in scaffold.bases}, furniture, (low.min(0), high.max(0)),
     )  # fmt: skip
     return replace(problem, twins=twins(problem))
-
-
-def _require_choices(problem: Problem, choices: Mapping[str, Choice]) -> None:
-    """Where a unit is left no choice at all, what was asked of its parts cannot be had together."""
-    for unit in problem.units:
-        asked = sorted({part.name for p in unit.patches for part in demanding(problem, p)})
-        if asked and not np.isfinite(choices[unit.name].weight):
-            raise FoldingError(
-                f"what is pinned or forbidden for {', '.join(asked)} cannot be had together: they fold in one unit, "
-                "and whatever they may do, two of them exclude each other"
-            )
-
-
-def _require_allowed(problem: Problem) -> None:
-    """What the recipe pins or forbids has to leave every patch something that it can do."""
-    for unit in problem.units:
-        asked = [p for p in unit.patches if demanding(problem, p)]
-        own = repertoire(problem, unit)
-        for patch in asked:
-            while own.later[patch]:
-                extend(problem, own, patch)
-        options = options_of(problem, unhindered(problem, own), np.zeros(3)) if asked else {}
-        for patch in asked:
-            if not np.isfinite(options[patch].weight).any():
-                names = ", ".join(part.name for part in demanding(problem, patch))
-                able = sorted({(x.variant.mechanism, x.variant.hinges) for x in own.plain[patch] if not x.is_out})
-                told = ", ".join(
-                    f"{how} with {count} hinge{'s' * (count > 1)}" if count else how for how, count in able
-                )
-                raise FoldingError(
-                    f"what is pinned or forbidden for {names} leaves {patch} nothing that it can do; "
-                    f"it can fold {told or 'not at all'}, or be narrowed or deleted where that is not ruled out"
-                )
-
-
-def _require_variants(problem: Problem) -> None:
-    """Patches without any option of their own have to go; where the furniture needs them, say so at once."""
-    lost = [p for unit in problem.units for p in unit.patches if not repertoire(problem, unit).plain[p]]
-    if not lost or hangs_together(problem.scaffold, set(lost)):
-        return
-    rigid = [p for p in lost if not problem.sites[p].patch.hingeable and problem.sites[p].far is not None]
-    if rigid:
-        raise FoldingError(
-            f"{', '.join(rigid[:4])} must not be split, cannot slant here and cannot be disconnected without cutting "
-            "the furniture in two; allow slanting or a hinge"
-        )
-    told = [f"{p} ({problem.sites[p].clear:.1f} mm high)" for p in lost[:4]]
-    raise FoldingError(
-        f"at scale 1:{1 / problem.scaffold.scale:.3g} {', '.join(told)} cannot carry hinges, and without them the "
-        f"furniture falls apart; print larger or with plates thinner than {problem.thickness.panel:g} mm"
-    )
 
 
 def _refused(ordered: Ordered) -> str:
@@ -212,7 +158,7 @@ def _notes(problem: Problem, ordered: Ordered) -> tuple[str, ...]:
     notes = []
     for fold in ordered.folds:
         for chain in fold.chains:
-            if chain.panel > problem.thickness.panel + 0.01:
+            if chain.panel > problem.sites[chain.patch].panel + 0.01:
                 notes.append(f"{chain.patch} is {chain.panel:.1f} mm thick so that the stack closes flat")
             if sum(chain.pads) > 0.01:
                 notes.append(

@@ -44,7 +44,7 @@ def _cut_at_top(scaffold: Scaffold, patch: Patch, thickness: Thickness) -> Patch
     """The patch as a T-scaffold on its lower base, a gap short of its upper one."""
     assert patch.upper is not None
     # The end of a leaning panel has a corner that stands higher than its middle.
-    corner = thickness.panel / 2 * float(np.hypot(patch.up[0], patch.up[1]))
+    corner = thickness.of(patch.thickness).panel / 2 * float(np.hypot(patch.up[0], patch.up[1]))
     top = faces(scaffold.base(patch.upper), thickness).bottom - thickness.gap - corner
     taken = float(patch.center[2] + patch.up[2] * patch.length / 2 - top) / float(patch.up[2])
     center = patch.center - patch.up * taken / 2

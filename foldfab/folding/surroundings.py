@@ -161,8 +161,8 @@ def _limits(
     problem: Problem, scene: Scene, unit: Unit, pairs: list[tuple[int, int, Indices, Indices]], shift: Array
 ) -> tuple[Limits, frozenset[str]]:
     """How far each upper cluster of the unit may come down towards each lower one, and what stands in the way."""
-    gap, thick = problem.thickness.gap, problem.thickness
-    wanted = {(s.anchor, s.far) for s in held(problem, unit)}
+    gap = problem.thickness.gap
+    wanted = {(s.anchor, s.far): problem.thickness.of(s.panel) for s in held(problem, unit)}
     found: dict[tuple[str, str], tuple[float, float, str]] = {}
     blockers: set[str] = set()
     for i, j, p, q in pairs:
@@ -184,6 +184,7 @@ def _limits(
         first = owners[int(np.argmin(np.where(stands, room, np.inf)))] if np.isfinite(raised) else ""
         found[pair] = (flat, raised, first)
         if pair in wanted:
+            thick = wanted[pair]
             least = clear_height(problem, *pair) - thick.stack(2, has_upper_base=True) - NEARLY * thick.panel
             blockers |= {owners[k] for k in np.nonzero(stands & (room < least))[0]}
     return found, frozenset(blockers)

@@ -69,6 +69,7 @@ def _part(form: PartForm, factor: float, steps: int) -> Part:
         hingeable=form.hingeable,
         pin=None if form.pin is None else _pattern(form.pin, steps),
         forbid=tuple(_pattern(pattern, steps) for pattern in form.forbid),
+        thickness=None if form.thickness is None else float(form.thickness),
     )
 
 
@@ -96,6 +97,8 @@ def _print(form: PrintForm) -> PrintOptions:
     return PrintOptions(
         printer=_printer(form.printer),
         thickness=float(form.thickness),
+        base_thickness=None if form.base_thickness is None else float(form.base_thickness),
+        own_thickness=form.own_thickness,
         clearance=float(form.clearance),
         posture=form.posture,
         scale=None if form.scale == "fit" else float(form.scale),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from difflib import get_close_matches
 from typing import Any
@@ -31,52 +31,49 @@ class _DirectionForm(Form):
 
 
 def override(
-    recipe: Recipe,
-    *,
-    direction: str | None = None,
-    printer: str | None = None,
-    scale: str | float | None = None,
-    clearance: str | float | None = None,
-    thickness: str | float | None = None,
-    posture: str | None = None,
-    alpha: str | float | None = None,
-    max_hinges: str | int | None = None,
-    shrink_steps: str | int | None = None,
-    slanting: bool | None = None,
-    stay_in_box: bool | None = None,
-    ordering: str | None = None,
-    collisions: str | None = None,
-    symmetry: bool | None = None,
-    time_limit: str | float | None = None,
-    rigid: Collection[str] = (),
-) -> Recipe:
+    recipe: Recipe, *, direction: str | None = None, printer: str | None = None, rigid: Collection[str] = (),
+    **options: str | float | bool | None,
+) -> Recipe:  # fmt: skip
     """`recipe` with every value replaced that is not None, and the parts named in `rigid` no longer hingeable.
 
-    Numbers may come as text. A direction is an axis such as "-x", a vector such as "0,0,-1", or "auto"; a scale is
-    "fit", a number, or a ratio such as "1:5".
+    Args:
+        recipe: what is changed.
+        direction: an axis such as "-x", a vector such as "0,0,-1", or "auto".
+        printer: a known printer, or a build volume such as "200x200x180".
+        rigid: names of parts.
+        options: by name, those of `fold` and `print`. Numbers may come as text; a scale is "fit", a number, or a ratio
+            such as "1:5".
 
     Raises:
         RecipeError: every value that is not allowed, with the option's name as its place.
+        TypeError: there is no option of that name.
     """
-    numbers = {"alpha": alpha, "max_hinges": max_hinges, "shrink_steps": shrink_steps, "time_limit": time_limit}
-    switches = {"slanting": slanting, "stay_in_box": stay_in_box, "symmetry": symmetry}
-    fold = _given({**numbers, **switches, "ordering": ordering, "collisions": collisions})
-    options = _given({"clearance": clearance, "thickness": thickness, "posture": posture, "scale": _ratio(scale)})
+    if "scale" in options:
+        options["scale"] = _ratio(options["scale"])
+    fold, made = _of(FoldForm, options), _of(PrintForm, options)
+    if unknown := options.keys() - fold.keys() - made.keys() - {k for k, v in options.items() if v is None}:
+        raise TypeError(f"there is no option {sorted(unknown)}")
     way = {} if direction is None else {"direction": _vector(direction)}
     wrong = _check(FoldForm, fold)
-    problems = _check(_DirectionForm, way) + wrong + _check(PrintForm, options) + _check_printer(printer)
+    problems = _check(_DirectionForm, way) + wrong + _check(PrintForm, made) + _check_printer(printer)
     problems += _check_rigid(recipe, rigid) + _check_patterns(recipe, {} if wrong else fold, rigid)
     if problems:
         raise RecipeError(SOURCE, tuple(problems))
     parts = tuple(replace(part, hingeable=False) if part.name in rigid else part for part in recipe.parts)
-    return _replaced(replace(recipe, parts=parts), way, fold, options, printer)
+    return _replaced(replace(recipe, parts=parts), way, fold, made, printer)
+
+
+def _of(form: type[Form], options: Mapping[str, Any]) -> dict[str, Any]:
+    """The options that are fields of a form and given, with numbers for the texts that hold one."""
+    present = {key: value for key, value in options.items() if value is not None and key in form.model_fields}
+    return {key: _number(value) if isinstance(value, str) else value for key, value in present.items()}
 
 
 def _replaced(
     recipe: Recipe, way: dict[str, Any], fold: dict[str, Any], options: dict[str, Any], printer: str | None
 ) -> Recipe:
     fold = {key: float(value) if key in _FLOATS else value for key, value in fold.items()}
-    options = {key: float(value) if isinstance(value, int) else value for key, value in options.items()}
+    options = {key: float(value) if type(value) is int else value for key, value in options.items()}
     if options.get("scale") == "fit":
         options["scale"] = None
     if printer is not None:
@@ -89,12 +86,6 @@ def _replaced(
     )
 
 
-def _given(values: dict[str, Any]) -> dict[str, Any]:
-    """Without what is None, and with numbers for the texts that hold one."""
-    present = {key: value for key, value in values.items() if value is not None}
-    return {key: _number(value) if isinstance(value, str) else value for key, value in present.items()}
-
-
 def _number(text: str) -> int | float | str:
     """The number that a text holds, the text itself where it holds none."""
     for kind in (int, float):
@@ -105,7 +96,7 @@ def _number(text: str) -> int | float | str:
     return text
 
 
-def _ratio(scale: str | float | None) -> str | float | None:
+def _ratio(scale: str | float | bool | None) -> str | float | bool | None:
     """The number behind 1:5 or 1/5, anything else as it came."""
     ratio = re.fullmatch(r"\s*(\d+(?:\.\d+)?)\s*[:/]\s*(\d+(?:\.\d+)?)\s*", scale) if isinstance(scale, str) else None
     if ratio is None or float(ratio[2]) == 0:

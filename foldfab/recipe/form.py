@@ -31,6 +31,8 @@ from foldfab.recipe.printers import DEFAULT_PRINTER, LARGEST, PRINTERS, SMALLEST
 
 MOST_PARTS = 20_000
 """Enough for composites of 32 × 32 cells."""
+THINNEST, THICKEST = 2.0, 20.0
+"""Limits of the thickness of a plate, mm in print."""
 MOST_PATTERNS = 100
 """Forbidden for one part."""
 FARTHEST = 1e6
@@ -124,6 +126,7 @@ def _known_printer(text: str) -> str:
 Coordinate = Annotated[float, AfterValidator(_in_reach)]
 Length = Annotated[float, Field(gt=0), AfterValidator(_thick_enough), AfterValidator(_in_reach)]
 Side = Annotated[float, Field(ge=SMALLEST, le=LARGEST)]
+Plate = Annotated[float, Field(ge=THINNEST, le=THICKEST)]
 Three = Field(min_length=3, max_length=3)
 Vector = Annotated[list[float], Three]
 Window = Annotated[
@@ -211,6 +214,7 @@ class PartForm(Form):
     forbid: list[Annotated[PatternForm, AfterValidator(_forbiddable)]] = Field(
         default=[], max_length=MOST_PATTERNS, description="What its modification must not be like."
     )
+    thickness: Plate | None = Field(default=None, description="Thickness of its plate or panels, mm in print.")
 
 
 class FoldForm(Form):
@@ -263,7 +267,14 @@ class PrintForm(Form):
     """How the model is to be printed; always in millimetres of the print."""
 
     printer: PrinterChoice = Field(default=DEFAULT_PRINTER.name, description="A known printer or one's own.")
-    thickness: float = Field(default=_PRINT.thickness, ge=2, le=20, description="Thickness of plates and panels, mm.")
+    thickness: Plate = Field(default=_PRINT.thickness, description="Thickness of plates and panels, mm.")
+    base_thickness: Plate | None = Field(
+        default=None, description="Thickness of base plates, mm; that of panels where missing."
+    )
+    own_thickness: bool = Field(
+        default=_PRINT.own_thickness,
+        description="Whether each part is as thick as it is at print scale, but no thinner than said above.",
+    )
     clearance: float = Field(
         default=_PRINT.clearance, ge=0.15, le=1, description="Gap that a hinge is printed with, mm."
     )

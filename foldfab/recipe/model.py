@@ -58,6 +58,8 @@ class Part:
     """What its modification has to be like; None where the search is free."""
     forbid: tuple[Pattern, ...] = ()
     """What its modification must not be like."""
+    thickness: float | None = None
+    """K of its plate or panels, mm in print; None where the print's options decide."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "center", frozen(self.center, 3))
@@ -112,6 +114,10 @@ class PrintOptions:
     printer: Printer
     thickness: float = 4.0
     """K, the thickness of plates and panels, mm in print."""
+    base_thickness: float | None = None
+    """The thickness of base plates, mm in print; None where it is K."""
+    own_thickness: bool = False
+    """Whether each part is as thick as it is at print scale, and only where that is less as thick as said above."""
     clearance: float = 0.3
     """g, the gap that a hinge is printed with, mm in print."""
     posture: Posture = "open"

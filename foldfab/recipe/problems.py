@@ -75,6 +75,8 @@ EXPECTED = MappingProxyType(
         "build_volume": "three lengths in mm",
         "build_volume[]": f"a length from {SMALLEST:g} to {LARGEST:g} mm",
         "thickness": "a number of millimetres from 2 to 20",
+        "base_thickness": "a number of millimetres from 2 to 20",
+        "own_thickness": "true or false",
         "clearance": "a number of millimetres from 0.15 to 1",
         "posture": '"open" or "folded"',
         "scale": '"fit" or a number from 0.00001 to 1000, such as 0.2',
@@ -181,9 +183,10 @@ def _unknown_key(key: str, parent: str) -> str:
     if (parent, key) in _NOT_YET:
         return _NOT_YET[parent, key]
     known = keys(FORMS[parent])
-    home = next((other for other, form in FORMS.items() if key in keys(form)), None)
-    if home is not None:
-        return f"is not known here; it belongs in {home or 'the top level'}"
+    homes = [other or "the top level" for other, form in FORMS.items() if key in keys(form)]
+    if homes:
+        # What a part may override is told of the place where it holds for all.
+        return f"is not known here; it belongs in {homes[-1] if homes[0] == 'parts[]' else homes[0]}"
     close = get_close_matches(key.lower(), known, n=1)
     if close:
         return f'is not known here; did you mean "{close[0]}"?'

@@ -58,6 +58,8 @@ def _part(part: Part) -> dict[str, Any]:
         written["pin"] = _pattern(part.pin)
     if part.forbid:
         written["forbid"] = [_pattern(pattern) for pattern in part.forbid]
+    if part.thickness is not None:
+        written["thickness"] = part.thickness
     return written
 
 
@@ -72,6 +74,8 @@ def _print(options: PrintOptions) -> dict[str, Any]:
     return {
         "printer": {"name": options.printer.name, "build_volume": list(options.printer.build_volume)},
         "thickness": options.thickness,
+        "base_thickness": options.base_thickness,
+        "own_thickness": options.own_thickness,
         "clearance": options.clearance,
         "posture": options.posture,
         "scale": "fit" if options.scale is None else options.scale,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from foldfab.errors import AbstractionError
@@ -22,6 +24,8 @@ TOUCH_SHARE = 0.02
 the whole, so that a composite is abstracted like its cells."""
 STEEP_THICKNESSES = 1.5
 """A base that slopes by more than this many panel thicknesses is printed level, and a note says so."""
+MOST_OWN = 20.0
+"""mm in print; what is thicker of its own is printed as thick as this."""
 STUB_THICKNESSES = 2.5
 """A piece shorter than this many panel thicknesses is too short to carry a hinge at each end."""
 
@@ -54,7 +58,21 @@ def abstract(recipe: Recipe, direction: Array, scale: float) -> Scaffold:
     _require_attached(_loose(parts, layout, patches))
     _require_one_piece(patches, layout.bases)
     notes = (*notes, *_tilted(parts, thickness))
-    return Scaffold(recipe, direction, upright(direction), scale, layout.bases, patches, notes)
+    bases = tuple(replace(b, thickness=_thickest(recipe, b.parts, scale, is_base=True)) for b in layout.bases)
+    patches = tuple(replace(p, thickness=_thickest(recipe, p.parts, scale, is_base=False)) for p in patches)
+    return Scaffold(recipe, direction, upright(direction), scale, bases, patches, notes)
+
+
+def _thickest(recipe: Recipe, names: tuple[str, ...], scale: float, *, is_base: bool) -> float | None:
+    """K of a plate or panel that stands for some parts: that of the thickest; None where it is the print's."""
+    options = recipe.print
+    role = options.base_thickness if is_base else None
+    own = [p for p in recipe.parts if p.name in set(names)]
+    asked = [p.thickness for p in own if p.thickness is not None]
+    if options.own_thickness:
+        least = role or options.thickness
+        asked += [max(least, round(min(scale * float(p.size.min()), MOST_OWN), 2)) for p in own if p.thickness is None]
+    return max(asked) if asked else role
 
 
 def _require_connected(parts: tuple[Segment, ...], tolerance: float) -> None:

@@ -45,6 +45,8 @@ class BasePatch:
     """Height of the highest member mid-sheet, mm."""
     outlines: tuple[Outline, ...]
     """What it covers; one connected region."""
+    thickness: float | None = None
+    """K of its plate, mm; None where it is that of the print."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,6 +71,8 @@ class Patch:
     upper: str | None
     """The base patch at its upper end, None at a free tip."""
     hingeable: bool = True
+    thickness: float | None = None
+    """K of its panels, mm; None where it is that of the print."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "center", frozen(self.center, 3))

@@ -57,7 +57,8 @@ def folding(solution: FoldSolution) -> Folding:
 
 def faces(base: BasePatch, thickness: Thickness) -> tuple[float, float]:
     """Heights of the lower and the upper face of a base's plate, mm."""
-    return base.bottom - thickness.panel / 2, base.top + thickness.panel / 2
+    half = thickness.of(base.thickness).panel / 2
+    return base.bottom - half, base.top + half
 
 
 def slip_per_hinge(solution: FoldSolution, chain: Chain, times: Array) -> Array:
@@ -84,16 +85,17 @@ def _plate(solution: FoldSolution, base: BasePatch) -> Boxes:
     """The outlines of a base, each at the heights of its own part, with what hinges need on them."""
     thickness = solution.thickness
     low, high = faces(base, thickness)
+    least = thickness.of(base.thickness).panel / 2
     made = []
     for outline in base.outlines:
         bottom, top = low, high
         if outline.extent is not None:
             middle = sum(outline.extent) / 2
-            rise = max((outline.extent[1] - outline.extent[0]) / 2, thickness.panel / 2)
+            rise = max((outline.extent[1] - outline.extent[0]) / 2, least)
             bottom, top = max(middle - rise, low), min(middle + rise, high)
         along = np.array([*outline.along, 0.0])
         axes = np.stack([along, np.cross(UP, along), UP])
-        half = np.array([*np.maximum(outline.half, thickness.panel / 2), (top - bottom) / 2])
+        half = np.array([*np.maximum(outline.half, least), (top - bottom) / 2])
         made.append(Boxes(np.array([[*outline.center, (bottom + top) / 2]]), axes[None], half[None]))
     for chain in solution.chains:
         points = axes_of(chain.root, chain, chain.lengths, chain.offsets, chain.lean)

@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from foldfab.errors import FoldingError
 from foldfab.folding.model import FoldSolution
 from foldfab.folding.problem import Problem
 from foldfab.folding.symmetry import is_less, mirrored

@@ -11,7 +11,7 @@ import re
 
 STYLES = "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION"
 """The record that opens the colours of one part; its last reference is the part's."""
-USE = re.compile(r"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\(\s*')[^']*'")
+USE = re.compile(r"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\()\s*'[^']*'(.*?;\n)", re.DOTALL)
 RECORD = re.compile(r"#(\d+) = (.*?);\n", re.DOTALL)
 REFERENCE = re.compile(r"#(\d+)")
 
@@ -20,7 +20,7 @@ def canonical(data: bytes) -> bytes:
     """The STEP file with its uses numbered and its colours ordered by the parts that they are of, in O(n)."""
     text = data.decode("ascii").replace("\r\n", "\n")
     count = iter(range(1, len(text)))
-    text = USE.sub(lambda found: f"{found[1]}{next(count)}'", text)
+    text = USE.sub(lambda found: f"{found[1]}'{next(count)}'{_unwrapped(found[2])}\n", text)
     start = re.search(rf"^#(\d+) = {STYLES}\(", text, re.MULTILINE)
     if start is None:
         return text.encode("ascii")
@@ -52,5 +52,5 @@ def _references(body: str) -> list[int]:
 
 
 def _unwrapped(body: str) -> str:
-    # Where a long record is broken into lines depends on how many digits its references have.
+    # Where a long record is broken into lines depends on how many digits its numbers have.
     return "".join(line.strip() for line in body.split("\n"))

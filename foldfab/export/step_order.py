@@ -8,17 +8,19 @@ colours, which stand last in a file, follow the parts that they colour.
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 
 STYLES = "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION"
 """The record that opens the colours of one part; its last reference is the part's."""
 USE = re.compile(r"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\()\s*'[^']*'(.*?;\n)", re.DOTALL)
 RECORD = re.compile(r"#(\d+) = (.*?);\n", re.DOTALL)
+OTHER_LETTERS = re.compile(r"[^\x00-\x7f]+")
 REFERENCE = re.compile(r"#(\d+)")
 
 
 def canonical(data: bytes) -> bytes:
     """The STEP file with its uses numbered and its colours ordered by the parts that they are of, in O(n)."""
-    text = data.decode("ascii").replace("\r\n", "\n")
+    text = OTHER_LETTERS.sub(_escaped, data.decode("utf-8").replace("\r\n", "\n"))
     count = iter(range(1, len(text)))
     text = USE.sub(lambda found: f"{found[1]}'{next(count)}'{_unwrapped(found[2])}\n", text)
     start = re.search(rf"^#(\d+) = {STYLES}\(", text, re.MULTILINE)
@@ -27,6 +29,17 @@ def canonical(data: bytes) -> bytes:
     end = text.index("ENDSEC;", start.start())
     records = {int(key): _unwrapped(body) for key, body in RECORD.findall(text[start.start() : end])}
     return (text[: start.start()] + _ordered(records, int(start[1])) + text[end:]).encode("ascii")
+
+
+def _escaped(found: re.Match[str]) -> str:
+    """Letters beyond ASCII as ISO 10303-21 writes them; not every reader takes them as they are."""
+    letters = found[0]
+    # build123d 0.13 hands the bytes of a label to the kernel as if each were a letter.
+    with suppress(UnicodeError):
+        letters = letters.encode("latin-1").decode("utf-8")
+    if max(letters) > "\uffff":
+        return f"\\X4\\{letters.encode('utf-32-be').hex().upper()}\\X0\\"
+    return f"\\X2\\{letters.encode('utf-16-be').hex().upper()}\\X0\\"
 
 
 def _ordered(records: dict[int, str], first: int) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from foldfab.export.step_order import canonical
 
 HEAD = "ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\n#1 = PART('a');\n#2 = PART('b');\n"
@@ -55,3 +57,16 @@ def test_a_file_without_colours() -> None:
 def test_lines_break_where_they_always_do() -> None:
     broken = use(100, "a").replace(",$);", ",$\n  );")
     assert canonical((HEAD + broken + TAIL).encode()) == (HEAD + use(1, "a") + TAIL).encode()
+
+
+@pytest.mark.parametrize(
+    ("name", "escaped"),
+    [
+        ("é椅", r"'\X2\00E96905\X0\',"),
+        ("é椅".encode().decode("latin-1"), r"'\X2\00E96905\X0\',"),
+        ("a🪑b", r"'a\X4\0001FA91\X0\b',"),
+    ],
+    ids=["as they are", "as bytes", "beyond the first plane"],
+)
+def test_letters_of_any_language_are_escaped(name: str, escaped: str) -> None:
+    assert escaped in canonical((HEAD + use(1, name) + TAIL).encode()).decode("ascii")

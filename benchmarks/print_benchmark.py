@@ -4,8 +4,9 @@ python benchmarks/print_benchmark.py [RECIPE ...] [--all]
 
 Each recipe is printed in a process of its own, stage by stage: solve, solids, inspection of the whole fold, writing of
 the folder, and the STEP file (build123d's import counted with it, because nobody else asks for it). A cell shows the
-stage's wall time in seconds and the process's peak resident memory so far in MB. `print` is the wall time of `foldfab
-print` from start to end, imports and all, and `solve` the second of two, so that imports are not counted.
+stage's process time in seconds and the process's peak resident memory so far in MB. `print` is the wall time of `foldfab
+print` from start to end without STEP, imports and all, and `solve` the second of two, so that imports are not counted.
+`volumes` is the largest difference between a solid that is read back from the STEP file and the printed one.
 
 Below stands one hinge, the two halves of the first inserted one of the bench, made by the print kernel and by
 build123d's own booleans.
@@ -26,9 +27,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from measuring import Column, Table, recipe_files, told
+
 import foldfab
 from foldfab.pipeline import prepare
-from measuring import Column, Table, recipe_files, told
 
 STAGES = ("solve", "solids", "inspection", "writing", "STEP")
 KILOBYTE = 1 if sys.platform == "darwin" else 1024
@@ -47,7 +49,13 @@ def main() -> int:
     if arguments.stages:
         print(json.dumps(staged(arguments.stages)))
         return 0
-    columns = [Column("recipe", 16), Column("bodies", 6), *(Column(name, 16) for name in STAGES), Column("print", 8)]
+    columns = [
+        Column("recipe", 16),
+        Column("bodies", 6),
+        *(Column(name, 16) for name in STAGES),
+        Column("volumes", 7),
+        Column("print", 8),
+    ]
     table = Table(tuple(columns))
     table.head()
     for file in recipe_files([] if arguments.all else arguments.recipes):
@@ -67,7 +75,7 @@ def row(file: Path) -> list[object]:
     if "error" in facts:
         return [file.stem, None, facts["error"]]
     cells = [f"{seconds:.2f} s {memory:5.0f} MB" for seconds, memory in facts["stages"]]
-    return [file.stem, facts["bodies"], *cells, f"{print_seconds(file):.2f} s"]
+    return [file.stem, facts["bodies"], *cells, f"{facts['off']:.2%}", f"{print_seconds(file):.2f} s"]
 
 
 def staged(recipe: str) -> dict[str, Any]:
@@ -82,10 +90,26 @@ def staged(recipe: str) -> dict[str, Any]:
             _, *writing = measured(lambda: foldfab.write(assembly, Path(folder) / "print"))
         from foldfab.export.step import step_bytes
 
-        _, *step = measured(lambda: step_bytes(assembly))
+        data, *step = measured(lambda: step_bytes(assembly))
     except foldfab.FoldfabError as error:
         return {"error": told(error)}
-    return {"bodies": len(assembly.bodies), "stages": [solve, solids, inspection, writing, step]}
+    return {
+        "bodies": len(assembly.bodies),
+        "stages": [solve, solids, inspection, writing, step],
+        "off": volumes_off(assembly, data),
+    }
+
+
+def volumes_off(assembly: Any, data: bytes) -> float:
+    """Largest share by which a solid of a STEP file differs from the printed one."""
+    import build123d as b3d
+
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "print.step"
+        file.write_bytes(data)
+        solids = [child for child in b3d.import_step(file).children if child.solids()]
+    pairs = zip(solids, assembly.bodies, strict=True)
+    return max(abs(solid.volume / body.volume - 1) for solid, body in pairs)
 
 
 def built(solution: Any) -> tuple[Any, list[float], list[float]]:
@@ -94,7 +118,7 @@ def built(solution: Any) -> tuple[Any, list[float], list[float]]:
 
     def mark(what: str) -> None:
         # What is being done is told from its beginning on.
-        marks.setdefault(what.split()[0], (time.perf_counter(), peak()))
+        marks.setdefault(what.split()[0], (time.process_time(), peak()))
 
     assembly = foldfab.fabricate(solution, progress=mark)
     mark("done")
@@ -104,9 +128,9 @@ def built(solution: Any) -> tuple[Any, list[float], list[float]]:
 
 def measured(call: Callable[[], Any]) -> tuple[Any, float, float]:
     """What a call returns, its seconds, and the peak memory of this process after it."""
-    start = time.perf_counter()
+    start = time.process_time()
     result = call()
-    return result, time.perf_counter() - start, peak()
+    return result, time.process_time() - start, peak()
 
 
 def peak() -> float:

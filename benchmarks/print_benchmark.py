@@ -4,7 +4,7 @@ python benchmarks/print_benchmark.py [RECIPE ...] [--all]
 
 Each recipe is printed in a process of its own, stage by stage: solve, solids, inspection of the whole fold, writing of
 the folder, and the STEP file (build123d's import counted with it, because nobody else asks for it). A cell shows the
-stage's process time in seconds and the process's peak resident memory so far in MB. `print` is the wall time of `foldfab
+stage's process time in seconds and the process's peak resident memory so far in MB. `print` is that of `foldfab
 print` from start to end without STEP, imports and all, and `solve` the second of two, so that imports are not counted.
 `volumes` is the largest difference between a solid that is read back from the STEP file and the printed one.
 
@@ -27,7 +27,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from measuring import Column, Table, recipe_files, told
+from measuring import Column, Table, forget, recipe_files, told
 
 import foldfab
 from foldfab.pipeline import prepare
@@ -84,6 +84,7 @@ def staged(recipe: str) -> dict[str, Any]:
     try:
         furniture = foldfab.load(recipe)
         foldfab.foldabilize(furniture)
+        forget()
         solution, *solve = measured(lambda: foldfab.foldabilize(furniture))
         assembly, solids, inspection = built(solution)
         with tempfile.TemporaryDirectory() as folder:
@@ -139,12 +140,18 @@ def peak() -> float:
 
 
 def print_seconds(file: Path) -> float:
-    """Wall time of `foldfab print` as a process of its own."""
+    """Process time of `foldfab print`, without STEP."""
     with tempfile.TemporaryDirectory() as folder:
         command = [sys.executable, "-m", "foldfab.cli", "print", str(file), "-q", "-o", folder]
-        start = time.perf_counter()
+        before = children_seconds()
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL, env={**os.environ, "PYTHONPATH": path()})
-        return time.perf_counter() - start
+        return children_seconds() - before
+
+
+def children_seconds() -> float:
+    """Process time of all processes that this one has waited for."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
 def path() -> str:

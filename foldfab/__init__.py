@@ -7,6 +7,6 @@ foldfab.write(assembly, "prints/bench")
 """
 
 from foldfab.errors import FoldfabError
-from foldfab.pipeline import check, fabricate, foldabilize, load, shipped, verify, write
+from foldfab.pipeline import check, compound, fabricate, foldabilize, load, shipped, verify, write
 
-__all__ = ["FoldfabError", "check", "fabricate", "foldabilize", "load", "shipped", "verify", "write"]
+__all__ = ["FoldfabError", "check", "compound", "fabricate", "foldabilize", "load", "shipped", "verify", "write"]

@@ -83,6 +83,9 @@ def _print(arguments: argparse.Namespace) -> int:
     from foldfab import pipeline
     from foldfab.report import summary
 
+    if arguments.step:
+        progress("loading build123d")
+        pipeline.require_cad()
     progress("looking for the cheapest fold")
     solution = _advised(recipe, progress, lambda: pipeline.foldabilize(recipe))
     progress("building the solids")
@@ -92,7 +95,7 @@ def _print(arguments: argparse.Namespace) -> int:
         return _complain("this would not work:\n  " + "\n  ".join(fatal), 1)
     progress("writing")
     folder = Path(arguments.output) / recipe.name
-    pipeline.write(assembly, folder)
+    pipeline.write(assembly, folder, step=arguments.step)
     progress.done()
     if not arguments.quiet:
         print(summary(assembly, folder))
@@ -224,6 +227,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
     making = _command(commands, "print", _print, "fold a recipe's furniture and write a folder that prints")
     making.add_argument("-o", "--output", metavar="DIR", default="prints", help="where its folder goes (prints)")
+    making.add_argument("--step", action="store_true", help="write a STEP file for CAD too, by build123d")
     folding = _command(commands, "fold", _fold, "only say what would be changed, in which order, at which cost")
     folding.add_argument("--json", action="store_true", help="print the facts as JSON")
     how_many = f"show the best K folds, 1 to {MOST_ALTERNATIVES}, and how they differ"

@@ -19,6 +19,8 @@ from foldfab.geometry.arrays import Array
 from foldfab.recipe.model import Posture, Recipe
 
 if TYPE_CHECKING:
+    import build123d
+
     from foldfab.export.report import Report
     from foldfab.fabrication.model import Assembly
     from foldfab.folding.model import FoldSolution
@@ -138,15 +140,38 @@ def fabricate(solution: FoldSolution, *, posture: Posture | None = None, progres
     return build(solution, posture or solution.scaffold.recipe.print.posture, tell)
 
 
-def write(assembly: Assembly, folder: Path | str) -> list[Path]:
-    """Writes the print folder, whole or not at all, and returns its files.
+def write(assembly: Assembly, folder: Path | str, *, step: bool = False) -> list[Path]:
+    """Writes the print folder, whole or not at all, and returns its files; with `step`, a STEP file for CAD too.
 
     Raises:
         PrintFolderError: the folder cannot be written.
+        FabricationError, MissingLibraryError: the STEP file cannot be made.
     """
     from foldfab.export.write import write as write_folder
 
-    return write_folder(assembly, Path(folder))
+    return write_folder(assembly, Path(folder), step=step)
+
+
+def require_cad() -> None:
+    """Finds out early that CAD solids cannot be made here.
+
+    Raises:
+        MissingLibraryError: build123d, or a system library that it needs, is absent.
+    """
+    from foldfab.fabrication.analytic import require
+
+    require()
+
+
+def compound(assembly: Assembly) -> build123d.Compound:
+    """The print as build123d knows it: named, coloured solids that revolute joints connect, open, in the recipe's axes.
+
+    Raises:
+        FabricationError, MissingLibraryError: it cannot be made.
+    """
+    from foldfab.export.step import compound as made
+
+    return made(assembly)
 
 
 def check(folder: Path | str) -> Report:

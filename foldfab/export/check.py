@@ -9,6 +9,7 @@ from pathlib import Path
 from foldfab.errors import FoldfabError, MissingLibraryError
 from foldfab.export.check_motion import check_motion
 from foldfab.export.check_solids import check_stl, check_threemf
+from foldfab.export.check_step import check_step
 from foldfab.export.report import Report, Row, listed
 from foldfab.export.stated import Stated, inside, read_sheet, stated
 
@@ -36,6 +37,7 @@ def inspect_folder(folder: Path) -> Report:
         ("3mf", lambda: check_threemf(folder, facts)),
         ("motion", lambda: check_motion(folder, facts)),
         ("cost", lambda: check_cost(facts)),
+        ("step", lambda: check_step(folder, facts)),
     )
     return Report(tuple(row for code, check in checks for row in _guarded(code, check)))
 

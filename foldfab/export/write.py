@@ -12,24 +12,26 @@ from foldfab.export.mesh_files import file_stems, stl_bytes
 from foldfab.export.preview import preview_png
 from foldfab.export.sheet import sheet_json
 from foldfab.export.shell import Shell, sheet_shells
+from foldfab.export.step import step_bytes
 from foldfab.export.swap import replace_folder
 from foldfab.export.threemf import threemf_bytes
 from foldfab.fabrication.model import Assembly
 
 
-def write(assembly: Assembly, folder: Path) -> list[Path]:
+def write(assembly: Assembly, folder: Path, *, step: bool = False) -> list[Path]:
     """The complete print folder of an assembly, in place of an older one; returns its files, sorted.
 
     Raises:
+        FabricationError, MissingLibraryError: the STEP file, which is written on request, cannot be made.
         PrintFolderError: `folder` holds something else, or cannot be written; what stood there still stands.
     """
-    files = contents(assembly)
+    files = contents(assembly, step=step)
     place = replace_folder(Path(folder), lambda fresh: _save(files, fresh))
     return sorted(place / name for name in files)
 
 
-def contents(assembly: Assembly) -> dict[str, bytes]:
-    """By path in the folder, the bytes of each file."""
+def contents(assembly: Assembly, *, step: bool = False) -> dict[str, bytes]:
+    """By path in the folder, the bytes of each file; with `step`, of a STEP file too."""
     recipe = assembly.solution.scaffold.recipe
     shells = sheet_shells(assembly)
     stems = file_stems(shell.name for shell in shells)
@@ -41,6 +43,7 @@ def contents(assembly: Assembly) -> dict[str, bytes]:
         "sheet.json": sheet_json(assembly, shells, stl_paths).encode(),
         "recipe.json": _recipe_json(assembly),
         "preview.png": _preview(assembly, shells),
+        **({f"{recipe.name}.step": step_bytes(assembly)} if step else {}),
     }
 
 

@@ -13,6 +13,8 @@ from foldfab.fabrication.inspect import inspect
 from foldfab.fabrication.model import Assembly, Body, Finding, Joint
 from foldfab.fabrication.panels import panels
 from foldfab.fabrication.plates import axis_of, plate
+from foldfab.fabrication.printed import printed
+from foldfab.fabrication.shapes import Shape
 from foldfab.fabrication.solids import Solid
 from foldfab.folding.kinematics import configuration, key_times
 from foldfab.folding.mechanism import frames, joints, tilts
@@ -35,7 +37,8 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
     """
     tell = progress or (lambda what, share: None)
     tell("solids", 0.0)
-    made, findings = _solids(solution)
+    described, findings = shapes(solution)
+    made = _solids(described)
     times = key_times(solution)
     poses = configuration(solution, times)
     found = tuple(_joints(solution))
@@ -51,8 +54,9 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
     return Assembly(solution, bodies, found, times, {n: poses[n] for n in made}, posture, tuple(findings))
 
 
-def _solids(solution: FoldSolution) -> tuple[dict[str, Solid], list[Finding]]:
-    made: dict[str, Solid] = {}
+def shapes(solution: FoldSolution) -> tuple[dict[str, Shape], list[Finding]]:
+    """By body, what it is made of in the open posture, canonical frame, mm; and the findings on the way."""
+    made: dict[str, Shape] = {}
     findings = []
     for base in solution.scaffold.bases:
         carried = tuple(c for c in solution.chains if base.name in (c.anchor, c.far))
@@ -63,7 +67,12 @@ def _solids(solution: FoldSolution) -> tuple[dict[str, Solid], list[Finding]]:
             )
     for chain in solution.chains:
         made.update(zip(chain.panels, panels(chain, solution.thickness), strict=True))
-    return {name: solids.tidied(body) for name, body in made.items()}, findings
+    return made, findings
+
+
+def _solids(described: dict[str, Shape]) -> dict[str, Solid]:
+    known: dict[Shape, Solid] = {}
+    return {name: solids.tidied(printed(shape, known)) for name, shape in described.items()}
 
 
 def _body(solution: FoldSolution, name: str, solid: Solid) -> Body:

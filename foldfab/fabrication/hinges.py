@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from foldfab.fabrication.solids import Solid, box, cone, rod
+from foldfab.fabrication.shapes import Shape, box, cone, rod
 from foldfab.folding.model import PIN_KNUCKLE, Thickness
 from foldfab.geometry.arrays import Array
 
@@ -54,7 +54,7 @@ def knuckles(span: Array, thickness: Thickness) -> Knuckles:
     return Knuckles(tuple(marks[::2]), tuple(marks[1::2]))
 
 
-def carrier(hinge: Knuckles, thickness: Thickness, x: float, z: float) -> tuple[list[Solid], list[Solid]]:
+def carrier(hinge: Knuckles, thickness: Thickness, x: float, z: float) -> tuple[list[Shape], list[Shape]]:
     """Material and holes of the carrier's knuckles around the axis (x, z)."""
     solid = [rod(thickness.panel / 2, a, b, x, z) for a, b in hinge.carrier]
     holes = []
@@ -66,7 +66,7 @@ def carrier(hinge: Knuckles, thickness: Thickness, x: float, z: float) -> tuple[
     return solid, holes
 
 
-def follower(hinge: Knuckles, thickness: Thickness, x: float, z: float) -> list[Solid]:
+def follower(hinge: Knuckles, thickness: Thickness, x: float, z: float) -> list[Shape]:
     """Material of the follower's knuckles around the axis (x, z), with their cones."""
     size, sunk = thickness.pin_radius, thickness.panel / 20
     solid = []
@@ -79,20 +79,20 @@ def follower(hinge: Knuckles, thickness: Thickness, x: float, z: float) -> list[
 
 def room(
     marks: tuple[tuple[float, float], ...], radius: float, thickness: Thickness, x: float, z: float
-) -> list[Solid]:
+) -> list[Shape]:
     """What the other part must leave free around knuckles at `marks`."""
     return [rod(radius, a - thickness.gap, b + thickness.gap, x, z, is_hole=True) for a, b in marks]
 
 
 def webs(
     marks: tuple[tuple[float, float], ...], thickness: Thickness, x: float, z: float, toward: float
-) -> list[Solid]:
+) -> list[Shape]:
     """Ties between the knuckles of an inserted hinge and their panel, which lies on the `toward` (±1) side in z."""
     near, far = z + toward * thickness.gap / 2, z + toward * thickness.panel / 2
     return [box((min(0.0, x), a, min(near, far)), (max(0.0, x), b, max(near, far))) for a, b in marks]
 
 
-def feet(hinge: Knuckles, thickness: Thickness, depth: float) -> list[Solid]:
+def feet(hinge: Knuckles, thickness: Thickness, depth: float) -> list[Shape]:
     """Feet of the carrier's knuckles around the axis at the origin, down to `depth` below it."""
     half = thickness.panel / 2
     return [box((-half, a, -depth), (half, b, 0.0)) for a, b in hinge.carrier]

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from foldfab.fabrication.hinges import carrier, follower, knuckles, room, webs
-from foldfab.fabrication.solids import Solid, box, cut, placed, rod, union
+from foldfab.fabrication.shapes import Shape, box, cut, placed, rod, union
 from foldfab.folding.mechanism import frames
 from foldfab.folding.model import Chain, Thickness
 
 
-def panels(chain: Chain, thickness: Thickness) -> list[Solid]:
+def panels(chain: Chain, thickness: Thickness) -> list[Shape]:
     """The panels of a chain in the open posture, from the anchor on."""
     thickness = thickness.of(chain.panel)
     origins, axes = frames(chain, np.zeros(1))
@@ -18,16 +18,16 @@ def panels(chain: Chain, thickness: Thickness) -> list[Solid]:
     return [placed(body, origins[0, i], axes[0, i]) for i, body in enumerate(made)]
 
 
-def _panel(chain: Chain, thickness: Thickness, i: int) -> Solid:
+def _panel(chain: Chain, thickness: Thickness, i: int) -> Shape:
     """One panel in its own frame: x along its normal, y along the hinges, z along its length from its first axis."""
     half, gap, last = thickness.panel / 2, thickness.gap, len(chain.lengths) - 1
     low, high = float(chain.span[0]), float(chain.span[1])
     length = float(chain.lengths[i])
     start, end = (0.0 if i == 0 else gap / 2), (length if i == last else length - gap / 2)
     solid = [box((-half, low, start), (half, high, end))]
-    holes: list[Solid] = []
-    extra: list[Solid] = []
-    sockets: list[Solid] = []
+    holes: list[Shape] = []
+    extra: list[Shape] = []
+    sockets: list[Shape] = []
     ends = [(0, 0.0)] if i == 0 else []
     ends += [(last + 1, length)] if i == last and chain.far is not None else []
     for hinge, z in ends:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from foldfab.fabrication.hinges import carrier, feet, knuckles
-from foldfab.fabrication.solids import Solid, box, cut, hull, pieces, placed, union
+from foldfab.fabrication.printed import printed
+from foldfab.fabrication.shapes import Shape, box, cut, hull, placed, union
+from foldfab.fabrication.solids import pieces
 from foldfab.folding.anatomy import base_boxes, faces
 from foldfab.folding.mechanism import joints, tilts
 from foldfab.folding.model import Chain, Thickness
@@ -21,11 +23,11 @@ ROOT_SHARE = 0.5
 """How deep a foot reaches into its plate, as a share of its own thickness or the plate's."""
 
 
-def plate(base: BasePatch, chains: tuple[Chain, ...], thickness: Thickness) -> tuple[Solid, bool]:
-    """The solid of a base in the open posture, and whether it had to be filled to hold together."""
-    posts: list[Solid] = []
-    sockets: list[Solid] = []
-    pads: list[Solid] = []
+def plate(base: BasePatch, chains: tuple[Chain, ...], thickness: Thickness) -> tuple[Shape, bool]:
+    """The shape of a base in the open posture, and whether it had to be filled to hold together."""
+    posts: list[Shape] = []
+    sockets: list[Shape] = []
+    pads: list[Shape] = []
     for chain in chains:
         for end in _ends(chain, base.name):
             solid, holes, pad = _mount(chain, base, thickness, end)
@@ -47,15 +49,15 @@ def _members(base: BasePatch, thickness: Thickness) -> Boxes:
     return Boxes(center, boxes.axes, half)
 
 
-def _one_body(outlines: Boxes, pads: list[Solid]) -> tuple[Solid, bool]:
+def _one_body(outlines: Boxes, pads: list[Shape]) -> tuple[Shape, bool]:
     for growth in GROWTH:
         body = union([_slab(outlines[i : i + 1], growth) for i in range(len(outlines))] + pads)
-        if pieces(body) == 1:
+        if pieces(printed(body)) == 1:
             return body, False
     return hull([_slab(outlines[i : i + 1], 0.0) for i in range(len(outlines))] + pads), True
 
 
-def _slab(outline: Boxes, growth: float) -> Solid:
+def _slab(outline: Boxes, growth: float) -> Shape:
     half = outline.half[0] + np.array([growth, growth, 0.0])
     return placed(box(-half, half), outline.center[0], outline.axes[0])
 
@@ -65,7 +67,7 @@ def _ends(chain: Chain, base: str) -> list[int]:
     return [i for i, name in enumerate((chain.anchor, chain.far)) if name == base]
 
 
-def _mount(chain: Chain, base: BasePatch, thickness: Thickness, end: int) -> tuple[list[Solid], list[Solid], Solid]:
+def _mount(chain: Chain, base: BasePatch, thickness: Thickness, end: int) -> tuple[list[Shape], list[Shape], Shape]:
     """Feet and plinth, sockets, and the bit of plate below them."""
     axis, rise = axis_of(chain, end), chain.rise * (1.0 if end == 0 else -1.0)
     # Right-handed with z along the outward direction of the face.

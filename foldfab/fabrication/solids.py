@@ -54,6 +54,17 @@ def cone(radius: float, base: float, tip: float, x: float, z: float, *, is_hole:
     return shape.transform(turn)
 
 
+def prism(outline: Iterable[tuple[float, float]], start: float, end: float) -> Solid:
+    """A simple polygon of points (x, z), in either sense, drawn along +y from `start` to `end`."""
+    points = np.array([*outline], dtype=np.float64)
+    x, z = points.T
+    is_clockwise = np.dot(x, np.roll(z, -1)) < np.dot(z, np.roll(x, -1))
+    # Extruded along +z as for a rod, which turns (x, y) into (x, -z): a polygon that was clockwise is not any more.
+    flat = np.stack([x, -z], axis=1)[:: 1 if is_clockwise else -1]
+    turn = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, start], [0.0, -1.0, 0.0, 0.0]])
+    return Manifold.extrude(CrossSection([flat]), end - start).transform(turn)
+
+
 def union(parts: list[Solid]) -> Solid:
     """All parts as one."""
     return checked(Manifold.batch_boolean(parts, OpType.Add)) if len(parts) > 1 else parts[0]

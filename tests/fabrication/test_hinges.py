@@ -14,6 +14,7 @@ from foldfab.fabrication import solids
 from foldfab.fabrication.hinges import Knuckles, knuckles
 from foldfab.fabrication.panels import panels
 from foldfab.fabrication.plates import plate
+from foldfab.fabrication.printed import printed
 from foldfab.fabrication.solids import Solid
 from foldfab.folding.mechanism import frames
 from foldfab.folding.model import Chain, Thickness
@@ -74,8 +75,8 @@ def test_a_base_hinge(
     wide = thickness.hinge_width if width == "least" else 36.0
     length = thickness.least_length(is_first=True, is_last=True, ends_free=True) + 10
     chain = make_chain(thickness, lengths=(length,), width=wide, pad=pad)
-    ground, is_filled = plate(make_base((0, 0, 30, 30)), (chain,), thickness)
-    (leg,) = panels(chain, thickness)
+    shape, is_filled = plate(make_base((0, 0, 30, 30)), (chain,), thickness)
+    ground, (leg,) = printed(shape), map(printed, panels(chain, thickness))
     assert not is_filled
     assert_printable(solids.tidied(ground))
     assert_printable(solids.tidied(leg))
@@ -99,7 +100,7 @@ def test_an_inserted_hinge(
         thickness.least_length(is_first=False, is_last=True, ends_free=True),
     ]
     chain = make_chain(thickness, lengths=(max(least), max(least)), width=wide, turn=turn)
-    lower, upper = panels(chain, thickness)
+    lower, upper = map(printed, panels(chain, thickness))
     assert_printable(solids.tidied(lower))
     assert_printable(solids.tidied(upper))
     moving = poses(chain)
@@ -109,7 +110,7 @@ def test_an_inserted_hinge(
 
 def test_hinges_that_are_not_held_are_noticed(make_chain: Callable[..., Chain]) -> None:
     thickness = Thickness(4.0, 0.3)
-    lower, upper = panels(make_chain(thickness, lengths=(20.0, 20.0)), thickness)
+    lower, upper = map(printed, panels(make_chain(thickness, lengths=(20.0, 20.0)), thickness))
     with pytest.raises(AssertionError):
         assert_captive(lower, upper.translate([50.0, 0.0, 0.0]), thickness)
 

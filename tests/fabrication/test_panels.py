@@ -12,6 +12,7 @@ import pytest
 from foldfab.fabrication import solids
 from foldfab.fabrication.panels import panels
 from foldfab.fabrication.plates import plate
+from foldfab.fabrication.printed import printed
 from foldfab.fabrication.solids import Solid
 from foldfab.folding.model import Chain, Thickness
 from foldfab.scaffold.model import BasePatch
@@ -34,7 +35,7 @@ def test_a_panel_for_each_length(
     assert_printable: Callable[[Solid], None],
 ) -> None:
     chain = make_chain(THICKNESS, lengths=lengths)
-    made = panels(chain, THICKNESS)
+    made = [printed(panel) for panel in panels(chain, THICKNESS)]
     assert chain.panels == names
     assert len(made) == len(names)
     for solid in made:
@@ -42,7 +43,7 @@ def test_a_panel_for_each_length(
 
 
 def test_panels_stand_in_a_row_with_the_clearance_between(make_chain: Callable[..., Chain]) -> None:
-    made = panels(make_chain(THICKNESS, lengths=(20.0, 20.0, 20.0)), THICKNESS)
+    made = [printed(panel) for panel in panels(make_chain(THICKNESS, lengths=(20.0, 20.0, 20.0)), THICKNESS)]
     for lower, upper in itertools.pairwise(made):
         assert solids.overlap(lower, upper) == 0
         assert solids.gap(lower, upper, 1.0) == pytest.approx(THICKNESS.gap, abs=0.02)
@@ -59,8 +60,8 @@ def test_a_thicker_chain_on_a_thinner_base(
     chain = make_chain(thick, lengths=(26.0, 26.0))
     root = THICKNESS.panel / 2 + thick.axis_height
     moved = replace(chain, root=np.array([0.0, 0.0, root]))
-    ground, _ = plate(make_base((0, 0, 40, 40)), (moved,), THICKNESS)
-    lower, upper = panels(moved, THICKNESS)
+    shape, _ = plate(make_base((0, 0, 40, 40)), (moved,), THICKNESS)
+    ground, lower, upper = map(printed, (shape, *panels(moved, THICKNESS)))
     for solid in (ground, lower, upper):
         assert_printable(solids.tidied(solid))
     low, high = solids.bounds(upper)

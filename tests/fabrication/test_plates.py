@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import pytest
 
-from foldfab.fabrication import solids
-from foldfab.fabrication.plates import GROWTH, plate
+from foldfab.fabrication import plates, solids
+from foldfab.fabrication.printed import printed
 from foldfab.fabrication.solids import Solid
 from foldfab.folding.model import Chain, Thickness
 from foldfab.scaffold.model import BasePatch
@@ -24,7 +24,7 @@ Rectangles = tuple[tuple[float, float, float, float], ...]
         ((0, 0, 20, 20), (40, 0, 20, 20)),
         ((0, 0, 20, 20), (40, 40, 20, 20)),
         ((0, 0, 20, 20), (40.3, 40.3, 20, 20)),
-        ((0, 0, 20, 20), (40 + 1.9 * GROWTH[-1], 0, 20, 20)),
+        ((0, 0, 20, 20), (40 + 1.9 * plates.GROWTH[-1], 0, 20, 20)),
         ((0, 0, 20, 20), (40, 0, 20, 1)),
     ],
     ids=["one", "overlap", "touch", "touch at a corner", "nearly touch", "apart", "a rod"],
@@ -32,7 +32,7 @@ Rectangles = tuple[tuple[float, float, float, float], ...]
 def test_outlines_become_one_body(
     rectangles: Rectangles, make_base: Callable[..., BasePatch], assert_printable: Callable[[Solid], None]
 ) -> None:
-    made, is_filled = plate(make_base(*rectangles), (), THICKNESS)
+    made, is_filled = plate(make_base(*rectangles), ())
     assert_printable(solids.tidied(made))
     assert not is_filled
     low, high = solids.bounds(made)
@@ -42,7 +42,7 @@ def test_outlines_become_one_body(
 def test_outlines_far_apart_are_filled(
     make_base: Callable[..., BasePatch], assert_printable: Callable[[Solid], None]
 ) -> None:
-    made, is_filled = plate(make_base((0, 0, 20, 20), (60, 0, 20, 20)), (), THICKNESS)
+    made, is_filled = plate(make_base((0, 0, 20, 20), (60, 0, 20, 20)), ())
     assert is_filled
     assert_printable(solids.tidied(made))
     assert made.volume() == pytest.approx(100 * 40 * 4)
@@ -51,14 +51,20 @@ def test_outlines_far_apart_are_filled(
 def test_a_hinge_beyond_the_edge_gets_plate_below_it(
     make_chain: Callable[..., Chain], make_base: Callable[..., BasePatch], assert_printable: Callable[[Solid], None]
 ) -> None:
-    made, is_filled = plate(make_base((-20, 0, 20, 20)), (make_chain(THICKNESS),), THICKNESS)
+    made, is_filled = plate(make_base((-20, 0, 20, 20)), (make_chain(THICKNESS),))
     assert not is_filled
     assert_printable(solids.tidied(made))
 
 
 def test_a_plinth_raises_the_axis(make_chain: Callable[..., Chain], make_base: Callable[..., BasePatch]) -> None:
     heights = [
-        solids.bounds(plate(make_base((0, 0, 30, 30)), (make_chain(THICKNESS, pad=pad),), THICKNESS)[0])[1][2]
+        solids.bounds(plate(make_base((0, 0, 30, 30)), (make_chain(THICKNESS, pad=pad),))[0])[1][2]
         for pad in (0.0, 4.3)
     ]
     assert heights[1] - heights[0] == pytest.approx(4.3)
+
+
+def plate(base: BasePatch, chains: tuple[Chain, ...]) -> tuple[Solid, bool]:
+    """A base as it is printed, and whether it had to be filled."""
+    shape, is_filled = plates.plate(base, chains, THICKNESS)
+    return printed(shape), is_filled

@@ -149,11 +149,22 @@ def write(assembly: Assembly, folder: Path | str) -> list[Path]:
     return write_folder(assembly, Path(folder))
 
 
-def check(folder: Path | str) -> Report:
-    """Inspects a print folder from its files alone."""
+def check(folder: Path | str, *, slicer: str | None = None) -> Report:
+    """Inspects a print folder from its files alone; with `slicer`, PrusaSlicer is asked too.
+
+    `slicer` is its path, or empty for the one that is installed.
+
+    Raises:
+        PrintFolderError: it is no print folder.
+        MissingLibraryError: PrusaSlicer is asked for and not there.
+    """
     from foldfab.export.check import inspect_folder
 
-    return inspect_folder(Path(folder))
+    if slicer is None:
+        return inspect_folder(Path(folder))
+    from foldfab.slicing.program import find_slicer
+
+    return inspect_folder(Path(folder), find_slicer(slicer))
 
 
 def shipped() -> tuple[Path, ...]:

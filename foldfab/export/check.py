@@ -8,6 +8,7 @@ from pathlib import Path
 
 from foldfab.errors import FoldfabError, MissingLibraryError
 from foldfab.export.check_motion import check_motion
+from foldfab.export.check_slicer import check_slicer
 from foldfab.export.check_solids import check_stl, check_threemf
 from foldfab.export.report import Report, Row, listed
 from foldfab.export.stated import Stated, inside, read_sheet, stated
@@ -16,11 +17,12 @@ COST = 1e-6
 """By how much sums of cost terms and importances may be off."""
 
 
-def inspect_folder(folder: Path) -> Report:
-    """All checks of a print folder.
+def inspect_folder(folder: Path, slicer: str | None = None) -> Report:
+    """All checks of a print folder; with the path of a `slicer`, by the printer's own program too.
 
     Raises:
         PrintFolderError: it has no readable `sheet.json`, so that there is nothing to check against.
+        MissingLibraryError: something that checking needs is absent.
     """
     folder = Path(folder)
     sheet = read_sheet(folder)
@@ -30,13 +32,15 @@ def inspect_folder(folder: Path) -> Report:
         return Report((Row("sheet", False, f"sheet.json has no field {error}"),))
     except (TypeError, ValueError, AttributeError) as error:
         return Report((Row("sheet", False, f"sheet.json is malformed: {error}"),))
-    checks: tuple[tuple[str, Callable[[], list[Row]]], ...] = (
+    checks: list[tuple[str, Callable[[], list[Row]]]] = [
         ("files", lambda: check_files(folder, facts)),
         ("stl", lambda: check_stl(folder, facts)),
         ("3mf", lambda: check_threemf(folder, facts)),
         ("motion", lambda: check_motion(folder, facts)),
         ("cost", lambda: check_cost(facts)),
-    )
+    ]
+    if slicer is not None:
+        checks.append(("slicer", lambda: check_slicer(folder, facts, slicer)))
     return Report(tuple(row for code, check in checks for row in _guarded(code, check)))
 
 

@@ -23,6 +23,16 @@ class Solid:
     """(n, 3) mm."""
     manifold: Manifold
 
+    @property
+    def low(self) -> Array:
+        """(3,) least corner of its box, mm."""
+        return np.asarray(self.vertices.min(axis=0))
+
+    @property
+    def high(self) -> Array:
+        """(3,) greatest corner of its box, mm."""
+        return np.asarray(self.vertices.max(axis=0))
+
 
 def solid(name: str, vertices: Array, faces: Indices) -> Solid:
     """The solid of (n, 3) vertices and (m, 3) faces.

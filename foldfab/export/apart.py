@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 STEP_MM = 0.5
 """Outlines are looked at this often along their way."""
 ROOM_MM = 0.9
-"""A piece with room for two lines must have an outline; of the tip of a cone Arachne leaves out dots of up to 0.65 mm."""
+"""A piece with room for two lines must have an outline; Arachne leaves out a cone's tip up to 0.65 mm wide."""
 LAID_MM2 = 0.02
 """Two bodies of neighbouring layers may share this much by rounding."""
 
@@ -135,6 +135,8 @@ def _layer(
 def _pieces(name: str, section: CrossSection, inset: float) -> list[_Piece]:
     pieces = []
     for part in section.decompose():
+        if part.is_empty():
+            continue
         rings = [np.asarray(ring, dtype=np.float64) for ring in part.to_polygons()]
         edges = np.concatenate([np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in rings])
         is_wide = not part.offset(-inset).is_empty()

@@ -72,33 +72,41 @@ def support_mm(gcode: str) -> float:
 
 def layers(gcode: str) -> Iterator[Layer]:
     """All layers with their outlines, from the bed up."""
+    # A layer that starts with the kind of extrusion that the last one ended with does not name it again.
+    kind = ""
     # What stands before the first mark is the start of the machine.
     for text in gcode.split(";LAYER_CHANGE\n")[1:]:
         head = re.match(r";Z:([\d.]+)\n;HEIGHT:([\d.]+)", text)
         if head is None:
             raise SlicingError("the G-code has a layer without a height; is this PrusaSlicer?")
-        yield Layer(float(head[1]), float(head[2]), tuple(_outlines(text)))
+        paths, kind = _outlines(text, kind)
+        yield Layer(float(head[1]), float(head[2]), paths)
 
 
-def _outlines(text: str) -> Iterator[Array]:
-    """Paths of one layer: a move without extrusion ends one, a change of kind does not."""
+def _outlines(text: str, kind: str) -> tuple[tuple[Array, ...], str]:
+    """The outlines of a layer that starts with a kind of extrusion, and the kind that it ends with.
+
+    A move without extrusion ends a path, a change of kind does not.
+    """
+    found: list[list[tuple[float, float]]] = []
     path: list[tuple[float, float]] = []
-    is_outline = is_one = False
+    is_one = False
     for line in text.splitlines():
         if line.startswith(";TYPE:"):
-            is_outline = line[6:] in OUTLINES
+            kind = line[6:]
         elif line.startswith("G1 X"):
             words = line.split()
             point = float(words[1][1:]), float(words[2][1:])
             if " E" in line:
                 path.append(point)
-                is_one = is_one or is_outline
+                is_one = is_one or kind in OUTLINES
                 continue
-            if is_one and len(path) > 1:
-                yield np.array(path)
+            if is_one:
+                found.append(path)
             path, is_one = [point], False
-    if is_one and len(path) > 1:
-        yield np.array(path)
+    if is_one:
+        found.append(path)
+    return tuple(np.array(path) for path in found if len(path) > 1), kind
 
 
 def _comment(gcode: str, name: str, pattern: str) -> str:

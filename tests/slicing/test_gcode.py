@@ -35,6 +35,11 @@ G1 X1 Y0 E1.25
 ;TYPE:External perimeter
 G1 X2 Y2 F7800
 G1 X3 Y2 E.1
+;LAYER_CHANGE
+;Z:.65
+;HEIGHT:.2
+G1 X4 Y4 F7800
+G1 X5 Y4 E.1
 ; filament used [mm] = 53.28
 ; estimated printing time (normal mode) = 1d 2h 3m 4s
 """
@@ -43,14 +48,16 @@ G1 X3 Y2 E.1
 def test_figures_are_read() -> None:
     assert gcode.figure(TEXT, "filament used [mm]") == 53.28
     assert gcode.seconds(TEXT) == 93784
-    assert gcode.heights(TEXT) == [0.2, 0.45]
+    assert gcode.heights(TEXT) == [0.2, 0.45, 0.65]
     assert gcode.support_mm(TEXT) == pytest.approx(1.75)
 
 
 def test_outlines_are_walked_across_overhangs_and_end_at_moves() -> None:
-    first, second = gcode.layers(TEXT)
+    first, second, third = gcode.layers(TEXT)
     assert [outline.tolist() for outline in first.outlines] == [[[5, 0], [6, 0], [6, 1], [5, 0.05]]]
     assert np.array_equal(second.outlines[0], [[2, 2], [3, 2]]) and len(second.outlines) == 1
+    # Its kind is that of the layer before.
+    assert np.array_equal(third.outlines[0], [[4, 4], [5, 4]])
     assert (second.top, second.middle) == (0.45, pytest.approx(0.325))
 
 

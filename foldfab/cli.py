@@ -95,7 +95,8 @@ def _print(arguments: argparse.Namespace) -> int:
     pipeline.write(assembly, folder)
     progress.done()
     if not arguments.quiet:
-        print(summary(assembly, folder))
+        printable = (folder / "printability.txt").read_text(encoding="utf-8").rstrip()
+        print(summary(assembly, folder, printable))
     return 0
 
 

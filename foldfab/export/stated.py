@@ -53,6 +53,8 @@ class Stated:
     """The fields of `sheet.json` that are checked."""
 
     name: str
+    recipe_sha256: str
+    """Of `recipe.json`."""
     direction: Array
     """(3,) unit vector."""
     clearance: float
@@ -104,6 +106,7 @@ def stated(sheet: dict[str, Any]) -> Stated:
         raise ValueError("parts are none, or share a name")
     return Stated(
         name=_text(sheet["name"]),
+        recipe_sha256=_text(sheet["provenance"]["recipe_sha256"]),
         direction=direction,
         clearance=_number(sheet["clearance_mm"]),
         bed=frozen(sheet["printer"]["build_volume_mm"], 3),

@@ -13,7 +13,10 @@ from foldfab.export.write import contents, write
 from foldfab.fabrication.model import Assembly
 from foldfab.geometry.arrays import Array
 
-NAMES = {"stool.3mf", "stool.glb", "sheet.json", "recipe.json", "preview.png"}
+NAMES = {"stool.3mf", "stool.glb", "sheet.json", "recipe.json", "preview.png"} | {
+    "printability.json",
+    "printability.txt",
+}
 STLS = {f"stl/{name}.stl" for name in ("flap", "floor", "leg-1", "leg-2", "top")}
 
 

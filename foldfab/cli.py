@@ -95,8 +95,7 @@ def _print(arguments: argparse.Namespace) -> int:
     pipeline.write(assembly, folder)
     progress.done()
     if not arguments.quiet:
-        printable = (folder / "printability.txt").read_text(encoding="utf-8").rstrip()
-        print(summary(assembly, folder, printable))
+        print(summary(assembly, folder, pipeline.printable(folder)))
     return 0
 
 

@@ -149,6 +149,11 @@ def write(assembly: Assembly, folder: Path | str) -> list[Path]:
     return write_folder(assembly, Path(folder))
 
 
+def printable(folder: Path | str) -> str:
+    """What slicers may stumble over in a print that was written: the table of its `printability.txt`."""
+    return (Path(folder) / "printability.txt").read_text(encoding="utf-8").rstrip()
+
+
 def check(folder: Path | str, *, slicer: str | None = None) -> Report:
     """Inspects a print folder from its files alone; with `slicer`, PrusaSlicer is asked too.
 

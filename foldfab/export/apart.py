@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 STEP_MM = 0.5
 """Outlines are looked at this often along their way."""
+AROUND_MM = 0.5
+"""How far around its knuckles a hinge is looked at: over the widest gap that is usual, and two layers."""
 ROOM_MM = 0.9
 """A piece with room for two lines must have an outline; Arachne leaves out a cone's tip up to 0.65 mm wide."""
 LAID_MM2 = 0.02
@@ -42,9 +44,9 @@ class Hinge:
     """Of its knuckles, mm."""
 
     def box(self) -> tuple[Array, Array]:
-        """(3,) least and (3,) greatest corner of its knuckles."""
+        """(3,) least and (3,) greatest corner of its knuckles, and of the gaps around them."""
         along = self.axis[1] - self.axis[0]
-        reach = self.radius * np.sqrt(np.maximum(0.0, 1 - (along / np.linalg.norm(along)) ** 2))
+        reach = self.radius * np.sqrt(np.maximum(0.0, 1 - (along / np.linalg.norm(along)) ** 2)) + AROUND_MM
         return self.axis.min(axis=0) - reach, self.axis.max(axis=0) + reach
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections import Counter
 from dataclasses import asdict
 from pathlib import Path
@@ -11,9 +12,11 @@ import numpy as np
 from foldfab.errors import SlicingError
 from foldfab.export.apart import Clash, Hinge, Outlines, outlines
 from foldfab.export.check_solids import bodies_of
+from foldfab.export.mesh_files import stl_bytes
 from foldfab.export.placed import placement
 from foldfab.export.read_files import PrintFile, read_stl, read_threemf
 from foldfab.export.report import Row, listed
+from foldfab.export.shell import Shell
 from foldfab.export.stated import Stated, StatedJoint, inside
 from foldfab.recipe.model import Printer
 from foldfab.slicing.gcode import layers
@@ -38,17 +41,26 @@ def check_slicer(folder: Path, stated: Stated, slicer: str) -> list[Row]:
 def _check_file(folder: Path, name: str, stated: Stated, slicer: str) -> list[Row]:
     file = inside(folder, name)
     x, y, z = stated.bed.tolist()
+    one, printer = read_threemf(file), Printer("", (x, y, z))
+    rows: list[Row] = []
     try:
-        bare, held = (run(file, Printer("", (x, y, z)), support=wanted, slicer=slicer) for wanted in (False, True))
-    except SlicingError as error:
-        return [Row("slicer", False, str(error))]
-    one = read_threemf(file)
-    return [
-        _figures(one, bare.report),
-        _mesh(one, bare.report),
-        _support(bare, held),
-        _apart(folder, one, stated, bare),
-    ]
+        bare, held = (run(file, printer, support=wanted, slicer=slicer) for wanted in (False, True))
+        rows += [_figures(one, bare.report), _mesh(one, bare.report), _support(bare, held)]
+        return [*rows, _apart(folder, one, stated, _as_one(one, printer, slicer))]
+    except (SlicingError, ValueError) as error:
+        return [*rows, Row("apart" if rows else "slicer", False, str(error))]
+
+
+def _as_one(one: PrintFile, printer: Printer, slicer: str) -> Sliced:
+    """The print sliced as one mesh without names.
+
+    PrusaSlicer closes narrow gaps only within what has one name; programs that do not read the names close them all.
+    """
+    nameless = Shell("print", "base", one.vertices, one.faces, np.zeros(len(one.faces), dtype=bool))
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "print.stl"
+        file.write_bytes(stl_bytes(nameless))
+        return run(file, printer, support=False, slicer=slicer)
 
 
 def _figures(one: PrintFile, report: SliceReport) -> Row:

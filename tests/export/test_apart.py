@@ -81,7 +81,7 @@ def test_a_hinge_beyond_the_layers_is_not_counted() -> None:
 
 def test_the_box_of_a_hinge_is_that_of_its_cylinder() -> None:
     low, high = hinge().box()
-    assert np.allclose(low, [54.2, 50, 0]) and np.allclose(high, [58.2, 58, 4])
+    assert np.allclose(low, [53.7, 49.5, -0.5]) and np.allclose(high, [58.7, 58.5, 4.5])
 
 
 @pytest.mark.parametrize(("gap", "is_apart"), [(0.05, False), (0.09, False), (0.15, True), (0.3, True)])

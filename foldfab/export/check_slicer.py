@@ -21,7 +21,6 @@ from foldfab.export.stated import Stated, StatedJoint, inside
 from foldfab.recipe.model import Printer
 from foldfab.slicing.gcode import layers
 from foldfab.slicing.model import SliceReport
-from foldfab.slicing.profile import LAYER_MM
 from foldfab.slicing.program import Sliced, run
 
 SAME_AXIS_MM = 1.0
@@ -45,7 +44,7 @@ def _check_file(folder: Path, name: str, stated: Stated, slicer: str) -> list[Ro
     rows: list[Row] = []
     try:
         bare, held = (run(file, printer, support=wanted, slicer=slicer) for wanted in (False, True))
-        rows += [_figures(one, bare.report), _mesh(one, bare.report), _support(bare, held)]
+        rows += [_figures(bare.report), _mesh(one, bare.report), _support(bare, held)]
         return [*rows, _apart(folder, one, stated, _as_one(one, printer, slicer))]
     except (SlicingError, ValueError) as error:
         return [*rows, Row("apart" if rows else "slicer", False, str(error))]
@@ -63,16 +62,12 @@ def _as_one(one: PrintFile, printer: Printer, slicer: str) -> Sliced:
         return run(file, printer, support=False, slicer=slicer)
 
 
-def _figures(one: PrintFile, report: SliceReport) -> Row:
-    top = float(one.vertices[:, 2].max())
-    problems = list(report.warnings)
-    if abs(report.height_mm - top) > LAYER_MM:
-        problems.append(f"sliced to {report.height_mm:.2f} mm, but the print is {top:.2f} mm high")
+def _figures(report: SliceReport) -> Row:
     text = (
         f"{report.slicer}: {told(report.seconds)}, {report.filament_g:.1f} g ({report.filament_cm3:.1f} cm³), "
         f"{report.layers} layers, {report.height_mm:.1f} mm, no warnings"
     )
-    return Row("slicer", not problems, listed(problems) or text, asdict(report))
+    return Row("slicer", not report.warnings, listed(list(report.warnings)) or text, asdict(report))
 
 
 def _mesh(one: PrintFile, report: SliceReport) -> Row:

@@ -14,7 +14,7 @@ from foldfab.errors import MissingLibraryError, SlicingError
 from foldfab.recipe.model import Printer
 from foldfab.slicing import gcode
 from foldfab.slicing.model import MeshInfo, SliceReport
-from foldfab.slicing.profile import DENSITY, profile
+from foldfab.slicing.profile import DENSITY, LAYER_MM, profile
 
 NAMES = ("prusa-slicer", "PrusaSlicer", "prusa-slicer-console")
 """What the program is called on one system or another."""
@@ -107,7 +107,7 @@ def _slice(program: str, file: Path, info: MeshInfo, settings: str, folder: Path
     x, y = ((info.low[axis] + info.high[axis]) / 2 for axis in (0, 1))
     target = folder / "print.gcode"
     settled = ["--load", str(folder / "settings.ini"), "--datadir", str(folder / "data")]
-    placed = ["--dont-arrange", "--center", f"{x:.6f},{y:.6f}"]
+    placed = ["--dont-arrange", "--no-ensure-on-bed", "--center", f"{x:.6f},{y:.6f}"]
     log = _call([program, "--export-gcode", *settled, *placed, "-o", str(target), str(file)])
     if not target.is_file():
         raise SlicingError(f"{file.name}: PrusaSlicer made no G-code: {_last(log)}")
@@ -142,8 +142,15 @@ def _report(text: str, log: str, info: MeshInfo) -> SliceReport:
         is_manifold=info.is_manifold,
         bodies=info.bodies,
         repairs=info.repairs,
-        warnings=warnings(log),
+        warnings=warnings(log) + _moved(info, max(tops, default=0.0)),
     )
+
+
+def _moved(info: MeshInfo, top: float) -> tuple[str, ...]:
+    """What lies in the air alone is dropped to the bed without a word; its height tells."""
+    if abs(top - info.high[2]) <= LAYER_MM:
+        return ()
+    return (f"sliced up to {top:.2f} mm, but the print reaches {info.high[2]:.2f} mm: it was moved",)
 
 
 def warnings(log: str) -> tuple[str, ...]:

@@ -105,6 +105,12 @@ def test_what_would_be_mended_is_told(prusa: str, box_stl: Callable[..., Path]) 
     assert dict(turned.repairs)["facets_reversed"] == 12
 
 
+def test_a_print_that_is_dropped_to_the_bed_is_told(prusa: str, box_stl: Callable[..., Path]) -> None:
+    raised = (((30.1, 40.1, 3.0), (10.0, 20.0, 5.0)),)
+    (warning,) = slice_print(box_stl(raised), MINI, support=False, slicer=prusa).warnings
+    assert warning == "sliced up to 5.00 mm, but the print reaches 8.00 mm: it was moved"
+
+
 def test_a_print_in_the_air_is_warned_of(prusa: str, box_stl: Callable[..., Path]) -> None:
     stacked = (((0.1, 0.1, 0.0), (9.1, 9.1, 2.1)), ((0.1, 0.1, 5.1), (9.1, 9.1, 2.1)))
     assert any("Empty layer" in text for text in slice_print(box_stl(stacked), MINI, support=False).warnings)

@@ -8,13 +8,15 @@ import numpy as np
 
 from foldfab.geometry.arrays import Array, Indices
 
-FLAT_MM = 1e-4
-"""A triangle that is lower than this is degenerate: single precision does not hold its direction."""
+FLAT_MM = 5e-6
+"""A triangle that is lower than this is degenerate: half a step of the grid that files are written on."""
+SLIVER_MM = 1e-4
+"""One that is lower than this has an area, but none that a slicer would see."""
 
 
 @dataclass(frozen=True, slots=True)
 class Faults:
-    """How often each occurs; a mesh without any is closed, oriented and the right way out."""
+    """How often each occurs; a mesh without any but slivers is closed, oriented and the right way out."""
 
     open_edges: int
     """Edges of one triangle only."""
@@ -23,6 +25,8 @@ class Faults:
     backwards_edges: int
     """Edges whose two triangles run along them the same way; all of them, where the mesh is inside out."""
     degenerate_facets: int
+    slivers: int
+    """Facets that are nearly degenerate."""
 
     @property
     def is_closed(self) -> bool:
@@ -38,12 +42,14 @@ def faults(vertices: Array, faces: Indices) -> Faults:
     ends, index, count = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True)
     sense = np.bincount(index.reshape(-1), np.where(edges[:, 0] < edges[:, 1], 1, -1), minlength=len(ends))
     backwards = int(np.sum((count == 2) & (sense != 0)))
+    heights = _heights(vertices[faces])
     is_sound = bool((count == 2).all()) and backwards == 0
     return Faults(
         open_edges=int(np.sum(count == 1)),
         nonmanifold_edges=int(np.sum(count > 2)),
         backwards_edges=len(ends) if is_sound and volume(vertices, faces) <= 0 else backwards,
-        degenerate_facets=int(np.sum(_heights(vertices[faces]) < FLAT_MM)),
+        degenerate_facets=int(np.sum(heights < FLAT_MM)),
+        slivers=int(np.sum((heights >= FLAT_MM) & (heights < SLIVER_MM))),
     )
 
 

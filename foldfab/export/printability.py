@@ -62,9 +62,13 @@ def printability(meshes: Sequence[Mesh], clearance: float) -> Printability:
     if not all(fault.is_closed for _, fault in found):
         unknown = "not measured, since the meshes are not closed"
         solids = [("thin walls", True), ("narrow gaps", True), ("overhangs", False), ("floating regions", False)]
-        return Printability((*kinds, *(Kind(name, is_error, None, unknown) for name, is_error in solids)))
+        return Printability(
+            (*kinds, *(Kind(name, is_error, None, unknown) for name, is_error in solids), _slivers(found))
+        )
     bodies = [solid(*mesh) for mesh in meshes]
-    return Printability((*kinds, _walls(bodies), _gaps(bodies, clearance), *_hanging(bodies, clearance)))
+    return Printability(
+        (*kinds, _walls(bodies), _gaps(bodies, clearance), *_hanging(bodies, clearance), _slivers(found))
+    )
 
 
 def as_json(found: Printability, facts: dict[str, object]) -> str:
@@ -92,6 +96,12 @@ def _mesh_kinds(found: list[tuple[str, Faults]]) -> tuple[Kind, ...]:
         name = field.replace("_", " ").replace("nonmanifold", "non-manifold")
         kinds.append(Kind(name, True, count, f"in {', '.join(where[:3])}" if where else ""))
     return tuple(kinds)
+
+
+def _slivers(found: list[tuple[str, Faults]]) -> Kind:
+    where = [name for name, fault in found if fault.slivers]
+    text = f"facets lower than 0.1 µm, in {', '.join(where[:3])}; slicers pass over them" if where else ""
+    return Kind("slivers", False, sum(fault.slivers for _, fault in found), text)
 
 
 def _walls(bodies: list[Solid]) -> Kind:

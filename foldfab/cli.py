@@ -37,6 +37,7 @@ _OPTIONS: tuple[tuple[str, str, str], ...] = (
     ("--time-limit", "SECONDS", "of work on an ordinary machine, up to 3600"),
 )
 _SWITCHES = ("slanting", "stay_in_box", "symmetry", "own_thickness")
+_SLICER = "--slicer"
 _REPEATED = (("--rigid", "NAME", "a part that must not get a hinge in its middle; may be given again for others"),)
 
 
@@ -98,7 +99,7 @@ def _print(arguments: argparse.Namespace) -> int:
     pipeline.write(assembly, folder, step=arguments.step)
     progress.done()
     if not arguments.quiet:
-        print(summary(assembly, folder))
+        print(summary(assembly, folder, pipeline.printable(folder)))
     return 0
 
 
@@ -159,11 +160,11 @@ def _check(arguments: argparse.Namespace) -> int:
     from foldfab import pipeline
 
     progress = _Progress(arguments.json)
-    progress("checking")
-    found = pipeline.check(Path(arguments.folder))
+    progress("checking" if arguments.slicer is None else "checking and slicing")
+    found = pipeline.check(Path(arguments.folder), slicer=arguments.slicer)
     progress.done()
     if arguments.json:
-        checks = [{"code": row.code, "ok": row.ok, "text": row.text} for row in found.rows]
+        checks = [{"code": row.code, "ok": row.ok, "text": row.text} | row.facts for row in found.rows]
         _print_json({"status": "ok" if found.ok else "failed", "folder": arguments.folder, "checks": checks})
     else:
         for row in found.rows:
@@ -242,6 +243,8 @@ def _parser() -> argparse.ArgumentParser:
     checking = _command(commands, "check", _check, "inspect a print folder from its files alone")
     checking.add_argument("folder", metavar="FOLDER", help="a folder that `foldfab print` wrote")
     checking.add_argument("--json", action="store_true", help="print the facts as JSON")
+    slicing = "slice it with PrusaSlicer too: time, filament, support, repairs, outlines at hinges"
+    checking.add_argument(_SLICER, metavar="=PATH", nargs="?", const="", help=slicing)
     _command(commands, "recipes", _recipes, "list the recipes that foldfab ships")
     composing = _command(
         commands, "compose", _compose, "arrange furniture in a grid, as a recipe to measure foldfab by"
@@ -296,11 +299,14 @@ class _Version(argparse.Action):
 
 
 def _joined(argv: Sequence[str]) -> list[str]:
-    """Values that begin with a minus are tied to their option; argparse would take `-z` for an option of its own."""
+    """Values that begin with a minus are tied to their option; argparse would take `-z` for an option of its own.
+
+    `--slicer` alone is tied to nothing: argparse would take the folder behind it for its path.
+    """
     valued = {option for option, _, _ in (*_OPTIONS, *_REPEATED)}
     arguments, left = list[str](), iter(argv)
     for argument in left:
-        value = next(left, None) if argument in valued else None
+        value = next(left, None) if argument in valued else "" if argument == _SLICER else None
         arguments.append(argument if value is None else f"{argument}={value}")
     return arguments
 

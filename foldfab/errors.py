@@ -5,6 +5,7 @@ FoldfabError                 one clear message; `exit_status` is what the comman
 ├── AbstractionError         the furniture has no scaffold along this direction (status 1)
 ├── FoldingError             no valid folding solution (status 1)
 ├── FabricationError         the solids would not work: the findings that say so (status 1)
+├── SlicingError             the slicer makes nothing of a print file (status 1)
 ├── PrintFolderError         a print folder that cannot be read or written (status 2)
 └── MissingLibraryError      a library or system package that this step needs is absent (status 2)
 """
@@ -62,6 +63,10 @@ class FoldingError(FoldfabError):
 
 class FabricationError(FoldfabError):
     """Solids that would not print or not fold; the message lists the findings."""
+
+
+class SlicingError(FoldfabError):
+    """A print file of which the slicer makes no G-code; the message is the slicer's own."""
 
 
 class PrintFolderError(FoldfabError):

@@ -174,11 +174,27 @@ def compound(assembly: Assembly) -> build123d.Compound:
     return made(assembly)
 
 
-def check(folder: Path | str) -> Report:
-    """Inspects a print folder from its files alone."""
+def printable(folder: Path | str) -> str:
+    """What slicers may stumble over in a print that was written: the table of its `printability.txt`."""
+    return (Path(folder) / "printability.txt").read_text(encoding="utf-8").rstrip()
+
+
+def check(folder: Path | str, *, slicer: str | None = None) -> Report:
+    """Inspects a print folder from its files alone; with `slicer`, PrusaSlicer is asked too.
+
+    `slicer` is its path, or empty for the one that is installed.
+
+    Raises:
+        PrintFolderError: it is no print folder.
+        MissingLibraryError: PrusaSlicer is asked for and not there.
+    """
     from foldfab.export.check import inspect_folder
 
-    return inspect_folder(Path(folder))
+    if slicer is None:
+        return inspect_folder(Path(folder))
+    from foldfab.slicing.program import find_slicer
+
+    return inspect_folder(Path(folder), find_slicer(slicer))
 
 
 def shipped() -> tuple[Path, ...]:

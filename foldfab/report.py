@@ -23,10 +23,10 @@ COLUMNS = ("step", "part", "fold", "hinges", "width kept", "cost", "why")
 ALTERNATIVES = ("rank", "cost", "no less than", "hinges", "narrowed", "order", "otherwise than the first")
 
 
-def summary(assembly: Assembly, folder: Path) -> str:
-    """What a maker wants to know about a print: what was changed and why, its sizes, and how to print it."""
+def summary(assembly: Assembly, folder: Path, printable: str = "") -> str:
+    """What a maker wants to know: what was changed and why, its sizes, how to print it, and how `printable` it is."""
     blocks = [_headline(assembly), _changes(assembly.solution), _figures(assembly), _printing(assembly)]
-    blocks += [_findings(assembly), f"Written to {folder}"]
+    blocks += [_findings(assembly), printable, f"Written to {folder}"]
     return "\n\n".join(block for block in blocks if block)
 
 

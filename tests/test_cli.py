@@ -39,6 +39,7 @@ class Pipeline(types.ModuleType):
             "fabricate",
             "examine",
             "write",
+            "printable",
             "check",
             "shipped",
             "compose",
@@ -79,7 +80,7 @@ def pipeline(monkeypatch: pytest.MonkeyPatch) -> Pipeline:
     monkeypatch.setattr(advice, "what_would_help", lambda recipe: fake.helps)
     monkeypatch.setitem(sys.modules, "foldfab.pipeline", fake)
     monkeypatch.setattr(foldfab, "pipeline", fake, raising=False)
-    monkeypatch.setattr(report, "summary", lambda assembly, folder: f"summary of {folder}")
+    monkeypatch.setattr(report, "summary", lambda assembly, folder, printable: f"summary of {folder}")
     monkeypatch.setattr(report, "fold_table", lambda solution, milliseconds: "table")
     monkeypatch.setattr(report, "fold_facts", lambda solution, milliseconds: {"status": "folded"})
     monkeypatch.setattr(report, "alternatives_table", lambda solutions, milliseconds: f"table of {len(solutions)}")
@@ -89,13 +90,13 @@ def pipeline(monkeypatch: pytest.MonkeyPatch) -> Pipeline:
 
 def row(code: str, ok: bool) -> Any:
     """A checked thing."""
-    return types.SimpleNamespace(code=code, ok=ok, text=f"{code} was looked at")
+    return types.SimpleNamespace(code=code, ok=ok, text=f"{code} was looked at", facts={"figure": 3})
 
 
 def test_print_walks_the_corridor(pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["print", "bench", "-o", "out"]) == 0
-    assert pipeline.names() == ["load", "foldabilize", "fabricate", "write"]
-    assert pipeline.calls[-1][1][1] == Path("out/bench")
+    assert pipeline.names() == ["load", "foldabilize", "fabricate", "write", "printable"]
+    assert pipeline.calls[-2][1][1] == Path("out/bench")
     assert capsys.readouterr() == (f"summary of {Path('out/bench')}\n", "")
 
 
@@ -255,6 +256,18 @@ def test_check(
     assert cli.main(["check", "prints/bench", "--json"]) == status
     facts = json.loads(capsys.readouterr().out)
     assert [check["ok"] for check in facts["checks"]] == [ok for _, ok in rows]
+    assert {check["figure"] for check in facts["checks"]} == {3}
+
+
+@pytest.mark.parametrize(
+    ("options", "slicer"),
+    [([], None), (["--slicer"], ""), (["--slicer=/opt/prusa"], "/opt/prusa"), (["--slicer="], "")],
+)
+@pytest.mark.parametrize("is_first", [True, False])
+def test_check_with_a_slicer(options: list[str], slicer: str | None, is_first: bool, pipeline: Pipeline) -> None:
+    folder = ["prints/bench"]
+    assert cli.main(["check", *(options + folder if is_first else folder + options)]) == 0
+    assert pipeline.calls == [("check", (Path("prints/bench"),), {"slicer": slicer})]
 
 
 def test_recipes(pipeline: Pipeline, capsys: pytest.CaptureFixture[str]) -> None:

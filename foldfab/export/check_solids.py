@@ -32,7 +32,7 @@ def check_stl(folder: Path, stated: Stated) -> list[Row]:
 def check_threemf(folder: Path, stated: Stated) -> list[Row]:
     """Each print file is strict 3MF of one item, names its bodies, fits the bed, stands on it and keeps its gaps."""
     prints = [read_threemf(inside(folder, name)) for name in stated.print_files]
-    solids = [body for one in prints for body in _bodies(one)]
+    solids = [body for one in prints for body in bodies_of(one)]
     problems = _print_problems(prints, stated)
     problems += [f"{body.name} is in several pieces" for body in solids if len(body.manifold.decompose()) != 1]
     text = listed(problems) or f"{len(stated.parts)} named bodies in one mesh, no warnings, fits the bed"
@@ -81,7 +81,12 @@ def _size(values: Array) -> str:
     return " x ".join(f"{value:.1f}" for value in values)
 
 
-def _bodies(one: PrintFile) -> list[Solid]:
+def bodies_of(one: PrintFile) -> list[Solid]:
+    """The named bodies of a print file.
+
+    Raises:
+        ValueError: one of them is not closed.
+    """
     bodies = []
     for name, first, last in one.volumes:
         used, faces = np.unique(one.faces[first : last + 1], return_inverse=True)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 
 @dataclass(frozen=True, slots=True)
@@ -14,6 +15,8 @@ class Row:
     ok: bool
     text: str
     """The measured figure, or what is wrong and where."""
+    facts: dict[str, Any] = field(default_factory=dict)
+    """Figures for programs, where there are several."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from foldfab.export.frames import moved, sheet_poses, to_sheet
+from foldfab.export.provenance import provenance
 from foldfab.export.shell import Shell
 from foldfab.export.version import foldfab_version
 from foldfab.fabrication.model import Assembly, Joint
@@ -31,6 +32,7 @@ def facts(assembly: Assembly, shells: tuple[Shell, ...], stl_paths: dict[str, st
         "name": name,
         "about": assembly.solution.scaffold.recipe.about,
         "version": foldfab_version(),
+        "provenance": provenance(assembly),
         **_print(assembly),
         **_sizes(assembly, shells),
         **_solution(assembly),

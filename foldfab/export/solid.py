@@ -20,7 +20,13 @@ class Solid:
 
     name: str
     vertices: Array
-    """(n, 3) mm."""
+    """(n, 3) mm, those that its faces use."""
+    faces: Indices
+    """(m, 3)"""
+    low: Array
+    """(3,) least corner of its box, mm."""
+    high: Array
+    """(3,) greatest corner of its box, mm."""
     manifold: Manifold
 
 
@@ -39,7 +45,9 @@ def solid(name: str, vertices: Array, faces: Indices) -> Solid:
         raise ValueError(f"{name}: the mesh is not watertight ({manifold.status().name})")
     if manifold.volume() <= 0:
         raise ValueError(f"{name}: the mesh encloses nothing, or is inside out")
-    return Solid(name, vertices[np.unique(faces)], manifold)
+    used, renamed = np.unique(faces, return_inverse=True)
+    points = vertices[used]
+    return Solid(name, points, renamed.reshape(-1, 3), points.min(axis=0), points.max(axis=0), manifold)
 
 
 def close_pairs(points: list[Array], distance: float) -> Iterator[tuple[int, int]]:

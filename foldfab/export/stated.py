@@ -33,6 +33,8 @@ class StatedJoint:
     parts: tuple[str, str]
     axis: Array
     """(2, 3) mm, open posture, sheet frame."""
+    radius: float
+    """Of its knuckles, mm."""
     range_deg: tuple[float, float]
 
 
@@ -51,6 +53,8 @@ class Stated:
     """The fields of `sheet.json` that are checked."""
 
     name: str
+    recipe_sha256: str
+    """Of `recipe.json`."""
     direction: Array
     """(3,) unit vector."""
     clearance: float
@@ -102,6 +106,7 @@ def stated(sheet: dict[str, Any]) -> Stated:
         raise ValueError("parts are none, or share a name")
     return Stated(
         name=_text(sheet["name"]),
+        recipe_sha256=_text(sheet["provenance"]["recipe_sha256"]),
         direction=direction,
         clearance=_number(sheet["clearance_mm"]),
         bed=frozen(sheet["printer"]["build_volume_mm"], 3),
@@ -142,7 +147,8 @@ def _joint(row: dict[str, Any], names: set[str]) -> StatedJoint:
     if not {a, b} <= names or a == b:
         raise ValueError(f"joint {row['name']} does not join two of the parts")
     low, high = row["range_deg"]
-    return StatedJoint(_text(row["name"]), (a, b), frozen(row["axis"], 2, 3), (_number(low), _number(high)))
+    axis = frozen(row["axis"], 2, 3)
+    return StatedJoint(_text(row["name"]), (a, b), axis, _number(row["radius_mm"]), (_number(low), _number(high)))
 
 
 def _term(row: dict[str, Any]) -> StatedTerm:

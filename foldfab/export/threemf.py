@@ -1,52 +1,55 @@
 """The print file: a 3MF of one build item, one object, one mesh, its bodies as disjoint shells.
 
-Slicers take several objects apart and drop each to the bed, so the bodies' names and ranges stand beside the mesh,
-in the records that PrusaSlicer and its kin keep for the volumes of an object.
+Slicers take several objects apart and drop each to the bed, so the bodies' names and ranges stand beside the mesh, in
+the records that slicers keep of their own. A thumbnail, and what the print was made from, lie in the file too.
 """
 
 from __future__ import annotations
 
 import io
 import zipfile
-from xml.sax.saxutils import quoteattr
+from collections.abc import Mapping
 
 import numpy as np
 
 from foldfab.export.colours import COLOURS, NAMES, materials
 from foldfab.export.shell import Shell
+from foldfab.export.slicer_settings import BAMBU, PRUSA, XML, bambu_config, prusa_config, xml_attribute
 from foldfab.export.version import foldfab_version
 
 CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
+OURS = "urn:foldfab:provenance"
 PACKAGE = "http://schemas.openxmlformats.org/package/2006"
 OBJECT_ID, MATERIALS_ID = 1, 2
+THUMBNAIL = "Metadata/thumbnail.png"
 FIXED_TIME = (1980, 1, 1, 0, 0, 0)
 """The zip format's earliest date: the same input gives the same bytes."""
-XML = '<?xml version="1.0" encoding="UTF-8"?>\n'
 
 
-def threemf_bytes(title: str, shells: tuple[Shell, ...]) -> bytes:
-    """A 3MF of the shells as they lie on the bed, millimetres."""
-    files = {
+def threemf_bytes(
+    title: str, shells: tuple[Shell, ...], *, metadata: Mapping[str, str] | None = None, thumbnail: bytes = b""
+) -> bytes:
+    """A 3MF of the shells as they lie on the bed, millimetres.
+
+    `metadata` stands in the model by name, those of our own as `foldfab:…`; `thumbnail` is a PNG.
+    """
+    texts = {
         "[Content_Types].xml": _content_types(),
-        "_rels/.rels": _relationships(),
-        "3D/3dmodel.model": _model(title, shells),
-        "Metadata/Slic3r_PE_model.config": _config(title, shells),
+        "_rels/.rels": _relationships(bool(thumbnail)),
+        "3D/3dmodel.model": _model(title, shells, metadata or {}),
+        PRUSA: prusa_config(title, shells, OBJECT_ID),
+        BAMBU: bambu_config(title, OBJECT_ID),
     }
+    files = {name: text.encode("utf-8") for name, text in texts.items()} | ({THUMBNAIL: thumbnail} if thumbnail else {})
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:
-        for name, text in files.items():
+        for name, data in files.items():
             entry = zipfile.ZipInfo(name, FIXED_TIME)
             entry.compress_type = zipfile.ZIP_DEFLATED
             # Left alone it names the system that wrote the archive.
             entry.create_system = 3
-            archive.writestr(entry, text.encode("utf-8"), compresslevel=6)
+            archive.writestr(entry, data, compresslevel=6)
     return buffer.getvalue()
-
-
-def xml_attribute(text: str) -> str:
-    """`text` quoted for an XML attribute; characters that XML forbids become a replacement mark."""
-    allowed = "".join(c if c in "\t\n\r" or (c >= " " and c not in "\ufffe\uffff") else "\ufffd" for c in text)
-    return quoteattr(allowed, {"\t": "&#9;", "\n": "&#10;", "\r": "&#13;"})
 
 
 def _content_types() -> str:
@@ -54,28 +57,35 @@ def _content_types() -> str:
         "rels": "application/vnd.openxmlformats-package.relationships+xml",
         "model": "application/vnd.ms-package.3dmanufacturing-3dmodel+xml",
         "config": "text/xml",
+        "png": "image/png",
     }
     rows = "".join(f' <Default Extension="{key}" ContentType="{value}"/>\n' for key, value in types.items())
     return f'{XML}<Types xmlns="{PACKAGE}/content-types">\n{rows}</Types>\n'
 
 
-def _relationships() -> str:
-    kind = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
-    row = f' <Relationship Target="/3D/3dmodel.model" Id="rel-1" Type="{kind}"/>\n'
-    return f'{XML}<Relationships xmlns="{PACKAGE}/relationships">\n{row}</Relationships>\n'
+def _relationships(has_thumbnail: bool) -> str:
+    targets = {"3D/3dmodel.model": "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"}
+    if has_thumbnail:
+        targets[THUMBNAIL] = f"{PACKAGE}/relationships/metadata/thumbnail"
+    rows = "".join(
+        f' <Relationship Target="/{target}" Id="rel-{number}" Type="{kind}"/>\n'
+        for number, (target, kind) in enumerate(targets.items(), 1)
+    )
+    return f'{XML}<Relationships xmlns="{PACKAGE}/relationships">\n{rows}</Relationships>\n'
 
 
-def _model(title: str, shells: tuple[Shell, ...]) -> str:
+def _model(title: str, shells: tuple[Shell, ...], metadata: Mapping[str, str]) -> str:
+    notes = {"Title": title, "Application": f"foldfab {foldfab_version()}", **metadata}
+    told = "".join(f' <metadata name="{name}">{_xml_text(text)}</metadata>\n' for name, text in notes.items())
     colours = "".join(
         f'   <base name="{name}" displaycolor="#{r:02X}{g:02X}{b:02X}"/>\n'
         for name, (r, g, b) in zip(NAMES, COLOURS, strict=True)
     )
     return (
         f'{XML}<model unit="millimeter" xml:lang="en-US" xmlns="{CORE}"'
-        ' xmlns:slic3rpe="http://schemas.slic3r.org/3mf/2017/06">\n'
+        f' xmlns:slic3rpe="http://schemas.slic3r.org/3mf/2017/06" xmlns:foldfab="{OURS}">\n'
         ' <metadata name="slic3rpe:Version3mf">1</metadata>\n'
-        f' <metadata name="Title">{_xml_text(title)}</metadata>\n'
-        f' <metadata name="Application">foldfab {foldfab_version()}</metadata>\n'
+        f"{told}"
         f' <resources>\n  <basematerials id="{MATERIALS_ID}">\n{colours}  </basematerials>\n'
         f'  <object id="{OBJECT_ID}" type="model" name={xml_attribute(title)} pid="{MATERIALS_ID}" pindex="0">\n'
         f"   <mesh>\n{_vertices(shells)}{_triangles(shells)}   </mesh>\n  </object>\n </resources>\n"
@@ -108,18 +118,3 @@ def _triangles(shells: tuple[Shell, ...]) -> str:
             rows.append(f'     <triangle v1="{a}" v2="{b}" v3="{c}"{colour}/>\n')
         start += len(shell.vertices)
     return f"    <triangles>\n{''.join(rows)}    </triangles>\n"
-
-
-def _config(title: str, shells: tuple[Shell, ...]) -> str:
-    rows: list[str] = []
-    start = 0
-    for shell in shells:
-        rows.append(
-            f'  <volume firstid="{start}" lastid="{start + len(shell.faces) - 1}">\n'
-            f'   <metadata type="volume" key="name" value={xml_attribute(shell.name)}/>\n'
-            '   <metadata type="volume" key="volume_type" value="ModelPart"/>\n  </volume>\n'
-        )
-        start += len(shell.faces)
-    name = f'  <metadata type="object" key="name" value={xml_attribute(title)}/>\n'
-    body = f"{name}{''.join(rows)}"
-    return f'{XML}<config>\n <object id="{OBJECT_ID}" instances_count="1">\n{body} </object>\n</config>\n'

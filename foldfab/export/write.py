@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-import json
+from collections.abc import Callable
 from pathlib import Path
 
-from foldfab.errors import MissingLibraryError
+from foldfab.errors import FabricationError, MissingLibraryError
 from foldfab.export.animation import glb_bytes
 from foldfab.export.bed import on_bed
 from foldfab.export.mesh_files import file_stems, stl_bytes
 from foldfab.export.preview import preview_png
+from foldfab.export.printability import Printability, as_json, as_text, printability
+from foldfab.export.provenance import metadata, recipe_bytes
 from foldfab.export.sheet import sheet_json
 from foldfab.export.shell import Shell, sheet_shells
 from foldfab.export.step import step_bytes
 from foldfab.export.swap import replace_folder
 from foldfab.export.threemf import threemf_bytes
+from foldfab.export.thumbnail import thumbnail_png
 from foldfab.fabrication.model import Assembly
 
 
@@ -31,34 +34,47 @@ def write(assembly: Assembly, folder: Path, *, step: bool = False) -> list[Path]
 
 
 def contents(assembly: Assembly, *, step: bool = False) -> dict[str, bytes]:
-    """By path in the folder, the bytes of each file; with `step`, of a STEP file too."""
+    """By path in the folder, the bytes of each file; with `step`, of a STEP file too.
+
+    Raises:
+        FabricationError: slicers would stumble over the print file's meshes.
+    """
     recipe = assembly.solution.scaffold.recipe
-    shells = sheet_shells(assembly)
+    shells, printed = sheet_shells(assembly), on_bed(assembly)
+    found = _printable(assembly, printed)
     stems = file_stems(shell.name for shell in shells)
     stl_paths = {name: f"stl/{stem}.stl" for name, stem in stems.items()}
     return {
         **{stl_paths[shell.name]: stl_bytes(shell) for shell in shells},
-        f"{recipe.name}.3mf": threemf_bytes(recipe.name, on_bed(assembly)),
+        f"{recipe.name}.3mf": _print_file(assembly, printed),
         f"{recipe.name}.glb": glb_bytes(assembly, shells),
         "sheet.json": sheet_json(assembly, shells, stl_paths).encode(),
-        "recipe.json": _recipe_json(assembly),
-        "preview.png": _preview(assembly, shells),
         **({f"{recipe.name}.step": step_bytes(assembly)} if step else {}),
+        "printability.json": as_json(found, {"name": recipe.name, "posture": assembly.posture}).encode(),
+        "printability.txt": f"{as_text(found)}\n".encode(),
+        "recipe.json": recipe_bytes(assembly),
+        "preview.png": _drawn(lambda: preview_png(assembly, shells)),
     }
 
 
-def _preview(assembly: Assembly, shells: tuple[Shell, ...]) -> bytes:
+def _printable(assembly: Assembly, printed: tuple[Shell, ...]) -> Printability:
+    meshes = [(shell.name, shell.vertices, shell.faces) for shell in printed]
+    found = printability(meshes, assembly.solution.thickness.gap)
+    if found.errors:
+        raise FabricationError("this would not print:\n  " + "\n  ".join(found.errors))
+    return found
+
+
+def _print_file(assembly: Assembly, printed: tuple[Shell, ...]) -> bytes:
+    name = assembly.solution.scaffold.recipe.name
+    return threemf_bytes(name, printed, metadata=metadata(assembly), thumbnail=_drawn(lambda: thumbnail_png(printed)))
+
+
+def _drawn(draw: Callable[[], bytes]) -> bytes:
     try:
-        return preview_png(assembly, shells)
+        return draw()
     except ImportError as error:
-        raise MissingLibraryError("drawing the preview needs the library Pillow; pip install pillow") from error
-
-
-def _recipe_json(assembly: Assembly) -> bytes:
-    from foldfab.recipe.write import to_json
-
-    data = to_json(assembly.solution.scaffold.recipe)
-    return (json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
+        raise MissingLibraryError("drawing pictures needs the library Pillow; pip install pillow") from error
 
 
 def _save(files: dict[str, bytes], folder: Path) -> None:

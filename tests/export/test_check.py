@@ -12,7 +12,7 @@ import pytest
 from foldfab.errors import PrintFolderError
 from foldfab.export.check import inspect_folder
 
-CODES = ["files", "stl", "3mf", "gap", "motion", "rigid", "collide", "joints", "connected", "flat", "cost"]
+CODES = ["files", "stl", "3mf", "gap", "printable", "motion", "rigid", "collide", "joints", "connected", "flat", "cost"]
 
 
 def failing(folder: Path) -> set[str]:
@@ -91,7 +91,7 @@ LIES: dict[str, tuple[Callable[[dict[str, Any]], Any], set[str]]] = {
     "volume": (lambda sheet: sheet["parts"][0].update(volume_mm3=1.0), {"stl", "motion"}),
     "name": (lambda sheet: sheet["parts"][1].update(name="ground"), {"sheet"}),
     "bed": (lambda sheet: sheet["printer"].update(build_volume_mm=[60, 60, 60]), {"3mf"}),
-    "clearance": (lambda sheet: sheet.update(clearance_mm=0.5), {"gap"}),
+    "clearance": (lambda sheet: sheet.update(clearance_mm=0.5), {"gap", "printable"}),
     "axis": (lambda sheet: sheet["joints"][0].update(axis=[[0, 0, 40], [0, 9, 40]]), {"joints"}),
     "range": (lambda sheet: sheet["joints"][1].update(range_deg=[0, 90]), {"joints"}),
     "components": (lambda sheet: sheet.update(components=2), {"connected"}),
@@ -102,6 +102,7 @@ LIES: dict[str, tuple[Callable[[dict[str, Any]], Any], set[str]]] = {
     "cost": (lambda sheet: sheet.update(cost=0.2), {"cost"}),
     "bound": (lambda sheet: sheet.update(lower_bound=0.2), {"cost"}),
     "importance": (lambda sheet: sheet["cost_terms"][0].update(importance=0.5), {"cost"}),
+    "hash": (lambda sheet: sheet["provenance"].update(recipe_sha256="0" * 64), {"files"}),
     "way out": (lambda sheet: sheet["parts"][0].update(stl="../../flap.stl"), {"files", "stl"}),
 }
 
@@ -131,6 +132,15 @@ def test_a_fold_that_does_not_work_is_caught(
 ) -> None:
     edit_glb(written, change)
     assert failing(written) & codes
+
+
+def test_printability_that_was_made_better_is_caught(written: Path) -> None:
+    path = written / "printability.json"
+    told = json.loads(path.read_text())
+    next(kind for kind in told["kinds"] if kind["name"] == "floating regions")["count"] = 0
+    path.write_text(json.dumps(told))
+    (row,) = [row for row in inspect_folder(written).rows if row.code == "printable"]
+    assert not row.ok and "floating regions: " in row.text and row.facts["open_edges"] == 0
 
 
 def test_stl_of_another_part_is_caught(written: Path) -> None:

@@ -15,6 +15,7 @@ FIELDS = [
     "name",
     "about",
     "version",
+    "provenance",
     "posture",
     "direction",
     "scale",

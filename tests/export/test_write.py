@@ -2,18 +2,23 @@
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from foldfab.errors import PrintFolderError
+from foldfab.errors import FabricationError, PrintFolderError
 from foldfab.export.check import inspect_folder
 from foldfab.export.write import contents, write
 from foldfab.fabrication.model import Assembly
 from foldfab.geometry.arrays import Array
+from foldfab.pipeline import printable
 
-NAMES = {"stool.3mf", "stool.glb", "sheet.json", "recipe.json", "preview.png"}
+NAMES = {"stool.3mf", "stool.glb", "sheet.json", "recipe.json", "preview.png"} | {
+    "printability.json",
+    "printability.txt",
+}
 STLS = {f"stl/{name}.stl" for name in ("flap", "floor", "leg-1", "leg-2", "top")}
 
 
@@ -56,6 +61,21 @@ def test_an_interrupted_write_leaves_the_old_print(
         write(make(posture="folded"), written)
     assert {path: path.read_bytes() for path in written.rglob("*") if path.is_file()} == before
     assert list(written.parent.iterdir()) == [written]
+
+
+def test_a_print_that_slicers_would_stumble_over_is_not_written(assembly: Assembly, tmp_path: Path) -> None:
+    flap = assembly.bodies[0]
+    holed = replace(flap, faces=flap.faces[2:], hinge_faces=np.array([], dtype=np.int64))
+    with pytest.raises(FabricationError, match=r"would not print:\n  open edges: 4, in flap"):
+        write(replace(assembly, bodies=(holed, *assembly.bodies[1:])), tmp_path / "stool")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_table_is_that_of_the_json(original: Path) -> None:
+    kinds = json.loads((original / "printability.json").read_text())["kinds"]
+    text = (original / "printability.txt").read_text()
+    assert all(f"{kind['name']:<18}{kind['count']:>7.0f}" in text for kind in kinds)
+    assert printable(original) == text.rstrip()
 
 
 def test_a_foreign_folder_is_refused(assembly: Assembly, tmp_path: Path) -> None:

@@ -74,6 +74,7 @@ def _print(assembly: Assembly) -> dict[str, Any]:
         "direction": _unit(scaffold.direction),
         "scale": float(scaffold.scale),
         "thickness_mm": _length(max([thickness.panel, *(c.panel for c in assembly.solution.chains)])),
+        "hinge": thickness.hinge,
         "clearance_mm": _length(thickness.gap),
         "printer": {"name": printer.name, "build_volume_mm": _lengths(np.array(printer.build_volume))},
         "print_files": [f"{scaffold.recipe.name}.3mf"],
@@ -163,6 +164,8 @@ def _joint(assembly: Assembly, joint: Joint) -> dict[str, Any]:
         "radius_mm": _length(joint.radius),
         "range_deg": [_length(angle) for angle in joint.range_deg],
         "inserted": joint.is_inserted,
+        "stop_deg": list(joint.stop_deg),
+        "stops": list(joint.stops),
     }
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from foldfab.fabrication.model import Assembly, Body, Finding, Joint
 from foldfab.fabrication.panels import panels
 from foldfab.fabrication.plates import axis_of, plate
 from foldfab.fabrication.solids import Solid
+from foldfab.fabrication.stopping import stopped
 from foldfab.folding.kinematics import configuration, key_times
 from foldfab.folding.mechanism import frames, joints, tilts
 from foldfab.folding.model import Chain, FoldSolution
@@ -44,16 +46,19 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
     times = key_times(solution)
     poses = configuration(solution, times)
     found = tuple(_joints(solution))
-    bodies = tuple(_body(solution, name, made[name]) for name in sorted(made))
     findings += [Finding("note", note) for note in solution.notes]
-    draft = Assembly(solution, bodies, found, times, {n: poses[n] for n in made}, posture, ())
+    draft = Assembly(solution, (), found, times, {n: poses[n] for n in made}, posture, ())
+    tell("stops", 0.0)
+    made, found = stopped(draft, made)
+    bodies = tuple(_body(solution, name, made[name]) for name in sorted(made))
+    draft = replace(draft, bodies=bodies, joints=found)
     findings += inspect(draft, made, lambda share: tell("inspection", share))
     fatal = [f for f in findings if f.is_fatal]
     if fatal:
         told = "".join(f"\n  {f.code}: {f.text}" for f in fatal[:12])
         more = f"\n  and {len(fatal) - 12} more" if len(fatal) > 12 else ""
         raise FabricationError(f"this print would not work:{told}{more}")
-    return Assembly(solution, bodies, found, times, {n: poses[n] for n in made}, posture, tuple(findings))
+    return replace(draft, findings=tuple(findings))
 
 
 def _solids(solution: FoldSolution) -> tuple[dict[str, Solid], list[Finding]]:

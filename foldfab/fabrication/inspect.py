@@ -15,6 +15,7 @@ import numpy as np
 from foldfab.fabrication import solids
 from foldfab.fabrication.model import Assembly, Finding
 from foldfab.fabrication.solids import Solid
+from foldfab.fabrication.turning import PAST, meets, stops_at, turn
 from foldfab.folding.kinematics import configuration
 from foldfab.geometry.arrays import Array
 from foldfab.recipe.hinges import STYLES
@@ -31,6 +32,8 @@ HELD = 0.02
 """Halves that share this volume hold each other, mm³."""
 TIGHT = 0.1
 """A clearance that always holds, as a share of the plates' thickness."""
+MOST_NAMES = 4
+"""More hinges than these are counted, not listed."""
 STILL = 1e-7
 """Relative poses that differ by less are the same."""
 
@@ -43,6 +46,7 @@ def inspect(assembly: Assembly, made: dict[str, Solid], tell: Callable[[float], 
         findings += _gaps(assembly, made)
         findings += _fold(assembly, made, tell)
         findings += _axes(assembly)
+        findings += _stops(assembly, made)
         # A pin that is put in later is not there yet to hold its hinge.
         if not STYLES[assembly.solution.thickness.hinge].has_loose_pin:
             findings += _captive(assembly, made)
@@ -126,7 +130,7 @@ def _gaps(assembly: Assembly, made: dict[str, Solid]) -> list[Finding]:
 
 
 def _fold(assembly: Assembly, made: dict[str, Solid], tell: Callable[[float], None]) -> list[Finding]:
-    times = _instants(assembly)
+    times = instants(assembly)
     poses = configuration(assembly.solution, times)
     corners = {n: _corners(*solids.bounds(s)) for n, s in made.items()}
     last: dict[tuple[str, str], Array] = {}
@@ -195,6 +199,27 @@ def _captive(assembly: Assembly, made: dict[str, Solid]) -> list[Finding]:
     return findings
 
 
+def _stops(assembly: Assembly, made: dict[str, Solid]) -> list[Finding]:
+    """Every hinge meets material when it is turned on past the ends of its range, both halves alone."""
+    free: dict[tuple[str, float | None], list[str]] = {}
+    for joint in assembly.joints:
+        a, b = joint.parts
+        range_ = turn(joint, assembly.poses[a], assembly.poses[b])
+        ends = ("straight" if joint.is_inserted else "where it stands open", "where it lies folded")
+        for is_folded, end in enumerate(ends):
+            if not meets(range_, made[a], made[b], PAST, is_folded=bool(is_folded)):
+                angle = stops_at(range_, made[a], made[b], is_folded=bool(is_folded))
+                free.setdefault((end, angle), []).append(joint.name)
+    return [_unstopped(end, angle, names) for (end, angle), names in free.items()]
+
+
+def _unstopped(end: str, angle: float | None, names: list[str]) -> Finding:
+    told = ", ".join(names[:MOST_NAMES]) + (f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else "")
+    how_far = "as far as one likes" if angle is None else f"{angle:g}°"
+    text = f"no room for a stop within {PAST:g}°: {told} can be turned {how_far} past {end}"
+    return Finding("stop", text if angle is None else f"{text}; thicker plates or less clearance would make it less")
+
+
 def _pulls(along: Array) -> list[Array]:
     """Unit vectors (3,) along an axis both ways, and eight across it."""
     axis = along / np.linalg.norm(along)
@@ -205,7 +230,8 @@ def _pulls(along: Array) -> list[Array]:
     return [axis, -axis, *(np.cos(t) * side + np.sin(t) * other for t in turns)]
 
 
-def _instants(assembly: Assembly) -> Array:
+def instants(assembly: Assembly) -> Array:
+    """(k,) the times at which a fold is looked at."""
     marks = [np.linspace(s.start, s.end, FRAMES_PER_STEP * _sections(s.travel) + 1) for s in assembly.solution.steps]
     found: Array = np.unique(np.concatenate([np.linspace(0.0, 1.0, 31), *marks]))
     return found

@@ -48,6 +48,10 @@ class Joint:
     """How far it may turn from the open posture."""
     is_inserted: bool
     """True where it splits a patch, False where it joins a patch to a base."""
+    stop_deg: tuple[float | None, float | None] = (None, None)
+    """How far past its open and its folded end it turns before its halves meet; None where they never do."""
+    stops: tuple[str, ...] = ()
+    """What was added to stop it: `tongue`, `lap`, `heel`, `butt`, `rest`."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "axis", frozen(self.axis, 2, 3))

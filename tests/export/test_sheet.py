@@ -19,6 +19,7 @@ FIELDS = [
     "direction",
     "scale",
     "thickness_mm",
+    "hinge",
     "clearance_mm",
     "printer",
     "print_files",

@@ -59,7 +59,7 @@ def test_hinge_faces_lie_at_the_inserted_hinge_only(assembled: Callable[..., Ass
 def test_progress_is_told(assembled: Callable[..., Assembly]) -> None:
     told: list[tuple[str, float]] = []
     room.build(assembled("table").solution, "open", lambda what, share: told.append((what, share)))
-    assert {what for what, _ in told} == {"solids", "inspection"}
+    assert {what for what, _ in told} == {"solids", "stops", "inspection"}
     assert all(0.0 <= share <= 1.0 for _, share in told)
 
 

@@ -27,7 +27,10 @@ _OPTIONS: tuple[tuple[str, str, str], ...] = (
     ("--printer", "NAME", "a known printer such as prusa-mk4, or a build volume such as 200x200x180"),
     ("--scale", "S", 'print size over true size: "fit", a number, or a ratio such as 1:5'),
     ("--hinge", "STYLE", "cone or clip, printed in place; filament, screw-m2 or screw-m3, pinned after printing"),
-    ("--clearance", "MM", "gap that a hinge is printed with, 0.15 to 1"),
+    ("--clearance", "MM", "gap that a hinge is printed with, 0.15 to 1; auto: by calibration or nozzle"),
+    ("--nozzle", "MM", "diameter of the nozzle (0.4)"),
+    ("--layer", "MM", "height of a layer (0.2)"),
+    ("--material", "M", "pla, petg, abs or nylon"),
     ("--thickness", "MM", "thickness of plates and panels, 2 to 20"),
     ("--alpha", "A", "weight of inserted hinges (1) against shrinking (0)"),
     ("--max-hinges", "N", "most hinges that may be inserted in one patch, 1 to 9"),
@@ -188,6 +191,14 @@ def _compose(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def _calibrate(arguments: argparse.Namespace) -> int:
+    from foldfab import pipeline
+
+    file = pipeline.calibrate(arguments.printer, arguments.clearance)
+    print(f"{arguments.printer} prints hinges with {arguments.clearance:g} mm from now on ({file})")
+    return 0
+
+
 def _load(arguments: argparse.Namespace, progress: _Progress) -> Recipe:
     progress("reading")
     from foldfab import pipeline
@@ -245,6 +256,9 @@ def _parser() -> argparse.ArgumentParser:
     composing.add_argument("kind", metavar="KIND", help="bench, building, hexagon or shelf")
     composing.add_argument("grid", metavar="GRID", help="columns x rows, such as 4x4; at most 32x32")
     composing.add_argument("-o", "--output", metavar="FILE", help="where the recipe goes (KIND-GRID.json, here)")
+    keeping = _command(commands, "calibrate", _calibrate, "keep the clearance that a printer prints hinges well with")
+    keeping.add_argument("--printer", metavar="NAME", required=True, help="a known printer or a build volume")
+    keeping.add_argument("clearance", metavar="CLEARANCE", type=float, help="mm, 0.15 to 1")
     return parser
 
 

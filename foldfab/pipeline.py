@@ -42,12 +42,25 @@ def load(text: str, **overrides: Any) -> Recipe:
     Raises:
         RecipeError: every problem with the file or the options, each with its place.
     """
+    from foldfab.recipe.clearance import calibrated
     from foldfab.recipe.edit import override
     from foldfab.recipe.find import find
     from foldfab.recipe.read import read
 
     recipe = read(find(text))
-    return override(recipe, **overrides) if overrides else recipe
+    return calibrated(override(recipe, **overrides) if overrides else recipe)
+
+
+def calibrate(printer: str, clearance: float) -> Path:
+    """Keeps the clearance (mm) that a printer prints hinges well with, from now on its default; returns the file.
+
+    Raises:
+        RecipeError: there is no such printer, or the clearance is out of range.
+    """
+    from foldfab.recipe.clearance import calibrate as keep
+    from foldfab.recipe.edit import known_printer
+
+    return keep(known_printer(printer).name, clearance)
 
 
 def compose(kind: str, grid: str) -> Recipe:

@@ -14,6 +14,7 @@ from foldfab.fabrication.inspect import inspect
 from foldfab.fabrication.model import Assembly, Body, Finding, Joint
 from foldfab.fabrication.panels import panels
 from foldfab.fabrication.plates import axis_of, plate
+from foldfab.fabrication.snaps import snap_findings
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.stopping import stopped
 from foldfab.folding.kinematics import configuration, key_times
@@ -43,6 +44,7 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
         raise FabricationError(problem)
     tell("solids", 0.0)
     made, findings = _solids(solution)
+    findings += snap_findings(solution)
     times = key_times(solution)
     poses = configuration(solution, times)
     found = tuple(_joints(solution))

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from foldfab.geometry.arrays import Array
+from foldfab.recipe.clearance import profile
 from foldfab.recipe.form import MILLIMETRES, FoldForm, PartForm, PatternForm, PrinterForm, PrintForm, RecipeForm
 from foldfab.recipe.model import FoldOptions, Part, Pattern, Printer, PrintOptions, Recipe
 from foldfab.recipe.patterns import snapped
@@ -93,10 +94,16 @@ def _fold(form: FoldForm) -> FoldOptions:
 
 
 def _print(form: PrintForm) -> PrintOptions:
+    is_auto = form.clearance == "auto"
+    clearance = profile(form.nozzle, form.layer, form.material) if is_auto else float(form.clearance)
     return PrintOptions(
         printer=_printer(form.printer),
         thickness=float(form.thickness),
-        clearance=float(form.clearance),
+        clearance=clearance,
+        clearance_from="profile" if is_auto else "recipe",
+        nozzle=float(form.nozzle),
+        layer=float(form.layer),
+        material=form.material,
         posture=form.posture,
         hinge=form.hinge,
         latch=form.latch,

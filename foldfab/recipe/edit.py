@@ -12,8 +12,9 @@ from pydantic import ValidationError
 
 from foldfab.errors import Problem, RecipeError
 from foldfab.recipe.build import unit_direction
+from foldfab.recipe.clearance import profile
 from foldfab.recipe.form import Direction, FoldForm, Form, PrintForm
-from foldfab.recipe.model import Part, Pattern, Recipe
+from foldfab.recipe.model import Part, Pattern, Printer, Recipe
 from foldfab.recipe.names import same_name
 from foldfab.recipe.patterns import hinges_problem, rigid_problem, window_problem
 from foldfab.recipe.printers import printer as find_printer
@@ -38,6 +39,9 @@ def override(
     scale: str | float | None = None,
     clearance: str | float | None = None,
     thickness: str | float | None = None,
+    nozzle: str | float | None = None,
+    layer: str | float | None = None,
+    material: str | None = None,
     posture: str | None = None,
     hinge: str | None = None,
     latch: bool | None = None,
@@ -64,7 +68,8 @@ def override(
     switches = {"slanting": slanting, "stay_in_box": stay_in_box, "symmetry": symmetry}
     fold = _given({**numbers, **switches, "ordering": ordering, "collisions": collisions})
     sizes = {"clearance": clearance, "thickness": thickness, "scale": _ratio(scale)}
-    options = _given({**sizes, "posture": posture, "hinge": hinge, "latch": latch})
+    machine = {"nozzle": nozzle, "layer": layer, "material": material}
+    options = _given({**sizes, **machine, "posture": posture, "hinge": hinge, "latch": latch})
     way = {} if direction is None else {"direction": _vector(direction)}
     wrong = _check(FoldForm, fold)
     problems = _check(_DirectionForm, way) + wrong + _check(PrintForm, _with_own(recipe, options)) + _check_printer(printer)
@@ -92,12 +97,23 @@ def _replaced(
         options["scale"] = None
     if printer is not None:
         options["printer"] = find_printer(printer)
+    options |= _clearance(recipe, options)
     return replace(
         recipe,
         direction=unit_direction(way["direction"]) if way else recipe.direction,
         fold=replace(recipe.fold, **fold),
         print=replace(recipe.print, **options),
     )
+
+
+def _clearance(recipe: Recipe, options: dict[str, Any]) -> dict[str, Any]:
+    """The clearance and where it comes from; by profile anew where it is not the recipe's own."""
+    if options.get("clearance", "auto") != "auto":
+        return {"clearance_from": "command line"}
+    if "clearance" not in options and recipe.print.clearance_from != "profile":
+        return {}
+    machine = [options.get(name, getattr(recipe.print, name)) for name in ("nozzle", "layer", "material")]
+    return {"clearance": profile(*machine), "clearance_from": "profile"}
 
 
 def _given(values: dict[str, Any]) -> dict[str, Any]:
@@ -135,6 +151,18 @@ def _check(form: type[Form], given: dict[str, Any]) -> list[Problem]:
     except ValidationError as error:
         return [Problem(_option(problem.place), problem.text) for problem in problems_of(error)]
     return []
+
+
+def known_printer(text: str) -> Printer:
+    """The printer of that name or build volume.
+
+    Raises:
+        RecipeError: there is none.
+    """
+    problems = _check_printer(text)
+    if problems:
+        raise RecipeError(SOURCE, tuple(problems))
+    return find_printer(text)
 
 
 def _check_printer(text: str | None) -> list[Problem]:

@@ -23,8 +23,9 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
+from foldfab.recipe.clearance import LEAST, MOST
 from foldfab.recipe.hinges import HingeKind, hinge_problem
-from foldfab.recipe.model import Collisions, FoldOptions, Mechanism, Ordering, Pattern, Posture, PrintOptions
+from foldfab.recipe.model import Collisions, FoldOptions, Material, Mechanism, Ordering, Pattern, Posture, PrintOptions
 from foldfab.recipe.model import Side as FoldSide
 from foldfab.recipe.names import folder_name_problem, has_control_characters, part_name_problem
 from foldfab.recipe.patterns import hinges_problem, is_covered, pattern_problem, rigid_problem, window_problem
@@ -144,9 +145,13 @@ Scale = Annotated[
     Annotated[Literal["fit"], Tag("<fit>")] | Annotated[float, Field(ge=1e-5, le=1e3), Tag("<number>")],
     Discriminator(lambda value: "<fit>" if isinstance(value, str) else "<number>"),
 ]
+Clearance = Annotated[
+    Annotated[Literal["auto"], Tag("<auto>")] | Annotated[float, Field(ge=LEAST, le=MOST), Tag("<number>")],
+    Discriminator(lambda value: "<auto>" if isinstance(value, str) else "<number>"),
+]
 
 
-TAGS = ("<axis>", "<vector>", "<fit>", "<number>", "<id>", "<own>")
+TAGS = ("<auto>", "<axis>", "<vector>", "<fit>", "<number>", "<id>", "<own>")
 """What keeps the branches of unions apart; left out of places."""
 
 
@@ -270,9 +275,12 @@ class PrintForm(Form):
 
     printer: PrinterChoice = Field(default=DEFAULT_PRINTER.name, description="A known printer or one's own.")
     thickness: float = Field(default=_PRINT.thickness, ge=2, le=20, description="Thickness of plates and panels, mm.")
-    clearance: float = Field(
-        default=_PRINT.clearance, ge=0.15, le=1, description="Gap that a hinge is printed with, mm."
+    clearance: Clearance = Field(
+        default="auto", description="Gap that a hinge is printed with, mm; auto is by calibration, nozzle and material."
     )
+    nozzle: float = Field(default=_PRINT.nozzle, ge=0.1, le=1.5, description="Diameter of the nozzle, mm.")
+    layer: float = Field(default=_PRINT.layer, ge=0.03, le=1, description="Height of a layer, mm.")
+    material: Material = Field(default=_PRINT.material, description="What it is printed of.")
     posture: Posture = Field(default=_PRINT.posture, description="Whether it is printed open or folded.")
     hinge: Annotated[HingeKind, AfterValidator(_makeable)] = Field(
         default=_PRINT.hinge, description="How hinges are pinned together."

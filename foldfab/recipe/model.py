@@ -13,6 +13,8 @@ Ordering = Literal["greedy", "optimal"]
 Collisions = Literal["swept", "regions"]
 Mechanism = Literal["in-place", "slanted", "deleted"]
 Side = Literal["l", "r"]
+Material = Literal["pla", "petg", "abs", "nylon"]
+Source = Literal["recipe", "command line", "profile", "calibration"]
 
 _SAME_EDGE = 1e-9
 """Shares of the width that are closer than this are the same cutting point."""
@@ -115,6 +117,13 @@ class PrintOptions:
     """K, the thickness of plates and panels, mm in print."""
     clearance: float = 0.3
     """g, the gap that a hinge is printed with, mm in print."""
+    clearance_from: Source = field(default="profile", compare=False)
+    """Who said so: the profile of nozzle, layer and material, or the printer's calibration, where nobody else did."""
+    nozzle: float = 0.4
+    """mm."""
+    layer: float = 0.2
+    """Height of a layer, mm."""
+    material: Material = "pla"
     posture: Posture = "open"
     hinge: HingeKind = "cone"
     """How the knuckles of a hinge are pinned together."""

@@ -21,6 +21,7 @@ FIELDS = [
     "thickness_mm",
     "hinge",
     "clearance_mm",
+    "clearance_from",
     "printer",
     "print_files",
     "size_open_mm",
@@ -35,6 +36,7 @@ FIELDS = [
     "components",
     "parts",
     "joints",
+    "snaps",
     "findings",
 ]
 

@@ -191,6 +191,18 @@ def _compose(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def _coupon(arguments: argparse.Namespace) -> int:
+    from foldfab import pipeline
+
+    folder = pipeline.coupon(
+        arguments.output, arguments.printer, thickness=arguments.thickness, posture=arguments.posture
+    )
+    print(f"Written to {folder}")
+    print("Print coupon.3mf, move every flap, and keep the least number that moves freely:")
+    print(f"  foldfab calibrate --printer {arguments.printer} NUMBER")
+    return 0
+
+
 def _calibrate(arguments: argparse.Namespace) -> int:
     from foldfab import pipeline
 
@@ -256,6 +268,11 @@ def _parser() -> argparse.ArgumentParser:
     composing.add_argument("kind", metavar="KIND", help="bench, building, hexagon or shelf")
     composing.add_argument("grid", metavar="GRID", help="columns x rows, such as 4x4; at most 32x32")
     composing.add_argument("-o", "--output", metavar="FILE", help="where the recipe goes (KIND-GRID.json, here)")
+    trying = _command(commands, "coupon", _coupon, "the same hinge in a row of clearances, to calibrate a printer by")
+    trying.add_argument("--printer", metavar="NAME", required=True, help="a known printer or a build volume")
+    trying.add_argument("--posture", metavar="P", default="open", help="how its hinges are printed: open or folded")
+    trying.add_argument("--thickness", metavar="MM", default="4", help="thickness of its plates (4)")
+    trying.add_argument("-o", "--output", metavar="DIR", default="prints", help="where its folder goes (prints)")
     keeping = _command(commands, "calibrate", _calibrate, "keep the clearance that a printer prints hinges well with")
     keeping.add_argument("--printer", metavar="NAME", required=True, help="a known printer or a build volume")
     keeping.add_argument("clearance", metavar="CLEARANCE", type=float, help="mm, 0.15 to 1")

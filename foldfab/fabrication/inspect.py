@@ -188,15 +188,22 @@ def _captive(assembly: Assembly, made: dict[str, Solid]) -> list[Finding]:
         if kind in tried:
             continue
         tried.add(kind)
-        reach = max(PULL_GAPS * gap, joint.radius)
         a, b = (made[name] for name in joint.parts)
-        if any(solids.overlap(a, b.translate((way * reach).tolist())) <= HELD for way in _pulls(along)):
+        if not is_captive(a, b, joint.axis, joint.radius, gap):
             text = (
                 f"{joint.name} can be pulled apart, because a clearance of {gap:g} mm is too much for plates of "
                 f"{2 * joint.radius:g} mm; print with a clearance of {TIGHT * 2 * joint.radius:.2f} mm or thicker"
             )
             findings.append(Finding("loose", text, is_fatal=True))
     return findings
+
+
+def is_captive(a: Solid, b: Solid, axis: Array, radius: float, gap: float) -> bool:
+    """Whether the halves of a hinge around an axis (2, 3) meet when they are pulled apart, whichever way."""
+    reach = max(PULL_GAPS * gap, radius)
+    return all(
+        solids.overlap(a, b.translate((way * reach).tolist())) > HELD for way in _pulls(axis[1] - axis[0])
+    )
 
 
 def _stops(assembly: Assembly, made: dict[str, Solid]) -> list[Finding]:

@@ -26,7 +26,7 @@ def build(form: RecipeForm, name: str, source: str) -> Recipe:
         direction=unit_direction(form.direction),
         parts=tuple(_part(part, factor, form.fold.shrink_steps) for part in form.parts),
         fold=_fold(form.fold),
-        print=_print(form.print),
+        print=build_print(form.print),
         about=form.about,
         source=source,
     )
@@ -93,7 +93,8 @@ def _fold(form: FoldForm) -> FoldOptions:
     )
 
 
-def _print(form: PrintForm) -> PrintOptions:
+def build_print(form: PrintForm) -> PrintOptions:
+    """The options of a print that a valid form describes."""
     is_auto = form.clearance == "auto"
     clearance = profile(form.nozzle, form.layer, form.material) if is_auto else float(form.clearance)
     return PrintOptions(

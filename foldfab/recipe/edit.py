@@ -11,10 +11,10 @@ from typing import Any
 from pydantic import ValidationError
 
 from foldfab.errors import Problem, RecipeError
-from foldfab.recipe.build import unit_direction
+from foldfab.recipe.build import build_print, unit_direction
 from foldfab.recipe.clearance import profile
 from foldfab.recipe.form import Direction, FoldForm, Form, PrintForm
-from foldfab.recipe.model import Part, Pattern, Printer, Recipe
+from foldfab.recipe.model import Part, Pattern, Printer, PrintOptions, Recipe
 from foldfab.recipe.names import same_name
 from foldfab.recipe.patterns import hinges_problem, rigid_problem, window_problem
 from foldfab.recipe.printers import printer as find_printer
@@ -163,6 +163,19 @@ def known_printer(text: str) -> Printer:
     if problems:
         raise RecipeError(SOURCE, tuple(problems))
     return find_printer(text)
+
+
+def known_print(**options: Any) -> PrintOptions:
+    """The options of a print from texts, on the default printer.
+
+    Raises:
+        RecipeError: every value that is not allowed.
+    """
+    given = _given(options)
+    problems = _check(PrintForm, given)
+    if problems:
+        raise RecipeError(SOURCE, tuple(problems))
+    return build_print(PrintForm.model_validate(given))
 
 
 def _check_printer(text: str | None) -> list[Problem]:

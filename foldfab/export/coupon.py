@@ -57,7 +57,9 @@ def _on_bed(made: Coupon, printer: Printer) -> tuple[Shell, ...]:
         points = [np.column_stack([-p[:, 1], p[:, 0], p[:, 2]]) for p in points]
         if not (size[[1, 0, 2]] <= bed).all():
             told = " x ".join(f"{side:.0f}" for side in size)
-            raise PrintFolderError(f"the coupon is {told} mm and does not fit the {printer.name}; try a smaller thickness")
+            raise PrintFolderError(
+                f"the coupon is {told} mm and does not fit the {printer.name}; try a smaller thickness"
+            )
     middle = (np.vstack(points).min(axis=0) + np.vstack(points).max(axis=0)) / 2
     shift = np.array([bed[0] / 2 - middle[0], bed[1] / 2 - middle[1], 0.0])
     return tuple(snapped(body, p + shift) for body, p in zip(made.bodies, points, strict=True))

@@ -10,7 +10,7 @@ import numpy as np
 from foldfab.export.frames import moved, sheet_poses, to_sheet
 from foldfab.export.shell import Shell
 from foldfab.export.version import foldfab_version
-from foldfab.fabrication.model import Assembly, Joint
+from foldfab.fabrication.model import Assembly, Joint, Latch
 from foldfab.fabrication.snaps import Snap, snaps
 from foldfab.folding.model import Modification
 from foldfab.geometry.arrays import Array
@@ -169,6 +169,15 @@ def _joint(assembly: Assembly, joint: Joint) -> dict[str, Any]:
         "inserted": joint.is_inserted,
         "stop_deg": list(joint.stop_deg),
         "stops": list(joint.stops),
+        **({} if joint.latch is None else {"latch": _latch(joint.latch)}),
+    }
+
+
+def _latch(latch: Latch) -> dict[str, float]:
+    return {
+        "holds_at_deg": _length(latch.holds_at),
+        "moment_nmm": round(latch.moment, 1),
+        "flex_mm": _length(latch.flex),
     }
 
 

@@ -51,10 +51,11 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
     findings += [Finding("note", note) for note in solution.notes]
     draft = Assembly(solution, (), found, times, {n: poses[n] for n in made}, posture, ())
     tell("stops", 0.0)
-    made, found = stopped(draft, made)
+    held = stopped(draft, made)
+    made = held.made
     bodies = tuple(_body(solution, name, made[name]) for name in sorted(made))
-    draft = replace(draft, bodies=bodies, joints=found)
-    findings += inspect(draft, made, lambda share: tell("inspection", share))
+    draft = replace(draft, bodies=bodies, joints=held.joints)
+    findings += inspect(draft, made, lambda share: tell("inspection", share), held.gives)
     fatal = [f for f in findings if f.is_fatal]
     if fatal:
         told = "".join(f"\n  {f.code}: {f.text}" for f in fatal[:12])

@@ -59,7 +59,9 @@ def coupon(thickness: float, posture: Posture) -> Coupon:
     """
     kept = [gap for gap in CLEARANCES if _holds(Thickness(thickness, gap))]
     if not kept:
-        raise FabricationError(f"hinges of plates of {thickness:g} mm hold at no clearance; try a thickness of 3 or more")
+        raise FabricationError(
+            f"hinges of plates of {thickness:g} mm hold at no clearance; try a thickness of 3 or more"
+        )
     width = max(Thickness(thickness, gap).hinge_width for gap in kept) + 2.0
     width = max(width, text_width("0.00"))
     halves = [_half(Thickness(thickness, gap), i * -(width + SPACE), width, posture) for i, gap in enumerate(kept)]
@@ -89,10 +91,12 @@ def _half(thickness: Thickness, y: float, width: float, posture: Posture) -> tup
     base, _ = plate(BasePatch("plate", ("plate",), 0.0, 0.0, (tile,)), (chain,), thickness)
     number = f"{thickness.gap:.2f}"
     corner = np.array([-TAIL + 1.0, y + text_width(number) / 2, 0.0])
-    assert HEIGHT + 2.0 < TAIL - half
+    assert TAIL - half > HEIGHT + 2.0
     axes = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     (flap,) = panels(chain, thickness)
-    return solids.union([base, *strokes(number, half - SUNK, half + RAISED, corner, axes)]), _posed(flap, chain, posture)
+    return solids.union([base, *strokes(number, half - SUNK, half + RAISED, corner, axes)]), _posed(
+        flap, chain, posture
+    )
 
 
 def _posed(flap: Solid, chain: Chain, posture: Posture) -> Solid:

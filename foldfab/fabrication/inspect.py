@@ -8,7 +8,8 @@ relative pose has changed, so a fold costs as many booleans as there are moving 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 
 import numpy as np
 
@@ -38,13 +39,23 @@ STILL = 1e-7
 """Relative poses that differ by less are the same."""
 
 
-def inspect(assembly: Assembly, made: dict[str, Solid], tell: Callable[[float], None]) -> list[Finding]:
-    """All findings about the assembly; fatal where it would not print or not fold."""
+def inspect(
+    assembly: Assembly,
+    made: dict[str, Solid],
+    tell: Callable[[float], None],
+    gives: Mapping[str, list[Solid]] = MappingProxyType({}),
+) -> list[Finding]:
+    """All findings about the assembly; fatal where it would not print or not fold.
+
+    `gives` is what of a panel gives way while it passes a latch: it is not there while the fold is tried.
+    """
     findings = _soundness(made)
     findings += _fits(assembly)
     if not any(f.is_fatal for f in findings):
         findings += _gaps(assembly, made)
-        findings += _fold(assembly, made, tell)
+        folding = {name: solids.cut(solid, gives.get(name, [])) for name, solid in made.items()}
+        findings += _fold(assembly, folding, tell)
+        findings += _latches(assembly)
         findings += _axes(assembly)
         findings += _stops(assembly, made)
         # A pin that is put in later is not there yet to hold its hinge.
@@ -201,9 +212,7 @@ def _captive(assembly: Assembly, made: dict[str, Solid]) -> list[Finding]:
 def is_captive(a: Solid, b: Solid, axis: Array, radius: float, gap: float) -> bool:
     """Whether the halves of a hinge around an axis (2, 3) meet when they are pulled apart, whichever way."""
     reach = max(PULL_GAPS * gap, radius)
-    return all(
-        solids.overlap(a, b.translate((way * reach).tolist())) > HELD for way in _pulls(axis[1] - axis[0])
-    )
+    return all(solids.overlap(a, b.translate((way * reach).tolist())) > HELD for way in _pulls(axis[1] - axis[0]))
 
 
 def _stops(assembly: Assembly, made: dict[str, Solid]) -> list[Finding]:
@@ -220,8 +229,21 @@ def _stops(assembly: Assembly, made: dict[str, Solid]) -> list[Finding]:
     return [_unstopped(end, angle, names) for (end, angle), names in free.items()]
 
 
+def _latches(assembly: Assembly) -> list[Finding]:
+    """Base hinges that were to be held open and are not."""
+    if not assembly.solution.scaffold.recipe.print.latch:
+        return []
+    free = [joint.name for joint in assembly.joints if not joint.is_inserted and joint.latch is None]
+    told = _told(free)
+    return [Finding("latch", f"no room for a latch at {told}; wider or thicker parts have it")] if free else []
+
+
+def _told(names: list[str]) -> str:
+    return ", ".join(names[:MOST_NAMES]) + (f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else "")
+
+
 def _unstopped(end: str, angle: float | None, names: list[str]) -> Finding:
-    told = ", ".join(names[:MOST_NAMES]) + (f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else "")
+    told = _told(names)
     how_far = "as far as one likes" if angle is None else f"{angle:g}°"
     text = f"no room for a stop within {PAST:g}°: {told} can be turned {how_far} past {end}"
     return Finding("stop", text if angle is None else f"{text}; thicker plates or less clearance would make it less")

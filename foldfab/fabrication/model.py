@@ -34,6 +34,18 @@ class Body:
         object.__setattr__(self, "hinge_faces", frozen_indices(self.hinge_faces, -1))
 
 
+@dataclass(frozen=True, slots=True)
+class Latch:
+    """What holds a hinge in its open place."""
+
+    holds_at: float
+    """How far it turns towards folded before the latch holds it, degrees."""
+    moment: float
+    """Up to which it holds, N·mm: a force times its arm from the axis."""
+    flex: float
+    """By how much its prongs give to let go, mm."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Joint:
     """One hinge between two bodies."""
@@ -52,6 +64,8 @@ class Joint:
     """How far past its open and its folded end it turns before its halves meet; None where they never do."""
     stops: tuple[str, ...] = ()
     """What was added to stop it: `tongue`, `lap`, `heel`, `butt`, `rest`."""
+    latch: Latch | None = None
+    """What holds it open, where that was asked for."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "axis", frozen(self.axis, 2, 3))

@@ -28,9 +28,8 @@ _STROKES = MappingProxyType(
     }
 )
 """The strokes of a seven-segment digit: lower left and upper right corner, mm."""
-_DIGITS = MappingProxyType(
-    dict(zip("0123456789", "abcdef bc abged abgcd fgbc afgcd afgedc abc abcdefg abcdfg".split(), strict=True))
-)
+_LIT = ("abcdef", "bc", "abged", "abgcd", "fgbc", "afgcd", "afgedc", "abc", "abcdefg", "abcdfg")
+_DIGITS = MappingProxyType(dict(zip("0123456789", _LIT, strict=True)))
 
 
 def text_width(text: str) -> float:

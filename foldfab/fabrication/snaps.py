@@ -46,7 +46,7 @@ def snap_findings(solution: FoldSolution) -> list[Finding]:
     return [
         Finding(
             "snap",
-            f"{snap.patch} has to give {snap.play:.2f} mm to pass the snap of what folds beside it, its hinges can give "
+            f"{snap.patch} has to give {snap.play:.2f} mm to pass the snap of its neighbours, its hinges can give "
             f"{snap.limit:.2f} mm; give the patches beside it the same number of hinges, or print larger",
             is_fatal=True,
         )

@@ -3,22 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from foldfab.fabrication.model import Assembly, Joint
+from foldfab.fabrication.model import Assembly, Joint, Latch
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.stops import Stop, rests, stops
 from foldfab.fabrication.trial import Trial
 from foldfab.fabrication.turning import PAST
 from foldfab.folding.model import Chain
 
-def stopped(assembly: Assembly, made: dict[str, Solid]) -> tuple[dict[str, Solid], tuple[Joint, ...]]:
-    """The bodies with stops, and the joints with the angles they reach.
+
+@dataclass(frozen=True, slots=True)
+class Stopped:
+    """Bodies and joints with their stops and latches."""
+
+    made: dict[str, Solid]
+    joints: tuple[Joint, ...]
+    """With what each reaches."""
+    gives: dict[str, list[Solid]]
+    """By panel, what of it gives way while it passes its latches."""
+
+
+def stopped(assembly: Assembly, made: dict[str, Solid]) -> Stopped:
+    """The bodies with stops and, where they are asked for, latches.
 
     `assembly` needs no bodies yet.
     """
     trial = Trial(assembly, made)
     taken: dict[str, tuple[str, ...]] = {joint.name: () for joint in assembly.joints}
+    latches: dict[str, Latch | None] = {}
+    is_latched = assembly.solution.scaffold.recipe.print.latch
     for chain, hinge, name in _hinges(assembly):
         ways = (
             (False, stops(assembly.solution, chain, hinge, in_open=assembly.posture == "open")),
@@ -29,8 +43,12 @@ def stopped(assembly: Assembly, made: dict[str, Solid]) -> tuple[dict[str, Solid
             if best is not None:
                 trial.take(best)
                 taken[name] = (*taken[name], best.kind)
-    joints = tuple(replace(j, stop_deg=_angles(trial, j.name), stops=taken[j.name]) for j in assembly.joints)
-    return trial.made, joints
+                latches |= {name: trial.latch(best)} if is_latched and best.detent else {}
+    joints = tuple(
+        replace(j, stop_deg=_angles(trial, j.name), stops=taken[j.name], latch=latches.get(j.name))
+        for j in assembly.joints
+    )
+    return Stopped(trial.made, joints, trial.gives)
 
 
 def _hinges(assembly: Assembly) -> Iterator[tuple[Chain, int, str]]:

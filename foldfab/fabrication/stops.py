@@ -25,6 +25,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from foldfab.fabrication.hinges import Knuckles, Mark, knuckles
+from foldfab.fabrication.latches import Detent, detent
 from foldfab.fabrication.plates import axis_of
 from foldfab.fabrication.solids import Solid, box, cut, placed
 from foldfab.folding.anatomy import faces
@@ -73,6 +74,8 @@ class Stop:
     """The body that it meets."""
     cut: Solid | None = None
     """What is taken from the other body."""
+    detent: Detent | None = None
+    """What could hold it open besides."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -104,11 +107,13 @@ def stops(solution: FoldSolution, chain: Chain, hinge: int, *, in_open: bool) ->
         return
     mount = _mount(solution, chain, hinge)
     base, panel = (first, second) if hinge == 0 else (second, first)
-    for added in () if in_open else _heels(mount):
+    is_tongue = in_open or solution.scaffold.recipe.print.latch
+    for added in () if is_tongue else _heels(mount):
         yield Stop(name, "heel", False, panel, placed(added, mount.origin, mount.frame), base)
-    for added, slot in _tongues(mount):
+    for added, slot, holding in _tongues(mount):
         material, hole = (placed(solid, mount.origin, mount.frame) for solid in (added, slot))
-        yield Stop(name, "tongue", False, panel, material, base, hole)
+        latch = holding and holding.at(mount.origin, mount.frame)
+        yield Stop(name, "tongue", False, panel, material, base, hole, latch)
 
 
 def rests(solution: FoldSolution, chain: Chain, hinge: int) -> Iterator[Stop]:
@@ -149,7 +154,7 @@ def _mount(solution: FoldSolution, chain: Chain, hinge: int) -> _Mount:
     return _Mount(axis_of(chain, 1 if is_far else 0), frame, lean, marks, (low, high), depth, own)
 
 
-def _tongues(mount: _Mount) -> Iterator[tuple[Solid, Solid]]:
+def _tongues(mount: _Mount) -> Iterator[tuple[Solid, Solid, Detent | None]]:
     half, gap = mount.thickness.panel / 2, mount.thickness.gap
     close, front = CLOSE * gap, half / 10
     most = (mount.depth - LIFT - half * abs(np.sin(mount.lean))) / np.cos(mount.lean)
@@ -161,7 +166,9 @@ def _tongues(mount: _Mount) -> Iterator[tuple[Solid, Solid]]:
     for low, high in _within(mount.marks.follower, gap):
         top = sweep * max(0.0, float(np.sin(-mount.lean)))
         slot = box((-sweep, low - gap, bottom), (front + close, high + gap, top))
-        yield _leant(box((-half, low, -reach), (front, high, 0.0)), mount), _leant(slot, mount)
+        holding = detent(half, front, reach, gap, low, high)
+        holding = holding and holding.at(np.zeros(3), _leaning(mount))
+        yield _leant(box((-half, low, -reach), (front, high, 0.0)), mount), _leant(slot, mount), holding
 
 
 def _heels(mount: _Mount) -> Iterator[Solid]:
@@ -228,8 +235,13 @@ def _slab(plane: tuple[Mark, Mark], low: float, high: float) -> Solid:
 
 def _leant(solid: Solid, mount: _Mount) -> Solid:
     """Turned with the open panel."""
+    return placed(solid, np.zeros(3), _leaning(mount))
+
+
+def _leaning(mount: _Mount) -> Array:
+    """(3, 3) rows x, y, z of the open panel in the frame of its mount."""
     sin, cos = np.sin(mount.lean), np.cos(mount.lean)
-    return placed(solid, np.zeros(3), np.array([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]]))
+    return np.array([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
 
 
 def _within(marks: tuple[Mark, ...], gap: float) -> Iterator[Mark]:

@@ -14,7 +14,8 @@ import numpy as np
 from foldfab.fabrication import solids
 from foldfab.fabrication.hinges import knuckles
 from foldfab.fabrication.inspect import CLASH, GAP_SHARE, STILL, instants
-from foldfab.fabrication.model import Assembly
+from foldfab.fabrication.latches import tried
+from foldfab.fabrication.model import Assembly, Latch
 from foldfab.fabrication.plates import ROOT_SHARE, axis_of
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.stops import Stop
@@ -38,6 +39,8 @@ class Trial:
         self._extent = np.min([c[0] for c in corners], axis=0), np.max([c[1] for c in corners], axis=0)
         self._feet = list(_feet(assembly))
         self.turns = {j.name: turn(j, *(self.poses[p] for p in j.parts)) for j in assembly.joints}
+        self.gives: dict[str, list[Solid]] = {}
+        """By panel, what of it gives way while it passes its latches."""
         self._parts = {j.name: j.parts for j in assembly.joints}
 
     def angle(self, joint: str, *, is_folded: bool) -> float | None:
@@ -64,6 +67,21 @@ class Trial:
             self._bounds[name] = self._along(name, made[name])
             low, high = self._printed(name, made[name])
             self._extent = np.minimum(low, self._extent[0]), np.maximum(high, self._extent[1])
+
+    def latch(self, stop: Stop) -> Latch | None:
+        """Makes the latch of a stop that is made, where it holds and lets go."""
+        if stop.detent is None:
+            return None
+        panel = solids.tidied(solids.cut(self.made[stop.body], [stop.detent.slit]))
+        base = solids.tidied(solids.union([self.made[stop.other], stop.detent.ridges]))
+        if not all(solids.pieces(s) == 1 and solids.stays_closed(s) for s in (panel, base)):
+            return None
+        is_base_first = self._parts[stop.joint][0] == stop.other
+        found = tried(self.turns[stop.joint], base, panel, stop.detent, is_base_first=is_base_first)
+        if found is not None:
+            self.made = {**self.made, stop.body: panel, stop.other: base}
+            self.gives.setdefault(stop.body, []).append(stop.detent.pressed)
+        return found
 
     def _angle(self, joint: str, made: dict[str, Solid], is_folded: bool) -> float | None:
         first, second = self._parts[joint]
@@ -150,8 +168,9 @@ class Trial:
 
 
 def _near(a: tuple[Array, Array], b: tuple[Array, Array], gap: float) -> Bools:
-    near: Bools = ((a[0] <= b[1] + gap) & (b[0] <= a[1] + gap)).all(axis=1)
-    return near
+    near = (a[0] <= b[1] + gap) & (b[0] <= a[1] + gap)
+    found: Bools = np.all(near, axis=1)
+    return found
 
 
 def _feet(assembly: Assembly) -> Iterator[tuple[str, tuple[str, ...], Array, Array]]:

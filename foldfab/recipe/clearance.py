@@ -99,4 +99,6 @@ def calibration_file() -> Path:
 
 
 def _broken(path: Path, why: str) -> RecipeError:
-    return RecipeError(str(path), (Problem("printers", f"{why}; calibrate again after deleting it, or give --clearance"),))
+    return RecipeError(
+        str(path), (Problem("printers", f"{why}; calibrate again after deleting it, or give --clearance"),)
+    )

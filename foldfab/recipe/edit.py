@@ -39,12 +39,6 @@ def override(
     scale: str | float | None = None,
     clearance: str | float | None = None,
     thickness: str | float | None = None,
-    nozzle: str | float | None = None,
-    layer: str | float | None = None,
-    material: str | None = None,
-    posture: str | None = None,
-    hinge: str | None = None,
-    latch: bool | None = None,
     alpha: str | float | None = None,
     max_hinges: str | int | None = None,
     shrink_steps: str | int | None = None,
@@ -55,11 +49,12 @@ def override(
     symmetry: bool | None = None,
     time_limit: str | float | None = None,
     rigid: Collection[str] = (),
+    **printing: str | float | bool | None,
 ) -> Recipe:
     """`recipe` with every value replaced that is not None, and the parts named in `rigid` no longer hingeable.
 
-    Numbers may come as text. A direction is an axis such as "-x", a vector such as "0,0,-1", or "auto"; a scale is
-    "fit", a number, or a ratio such as "1:5".
+    `printing` are further fields of `print` by name. Numbers may come as text. A direction is an axis such as "-x", a
+    vector such as "0,0,-1", or "auto"; a scale is "fit", a number, or a ratio such as "1:5".
 
     Raises:
         RecipeError: every value that is not allowed, with the option's name as its place.
@@ -68,12 +63,13 @@ def override(
     switches = {"slanting": slanting, "stay_in_box": stay_in_box, "symmetry": symmetry}
     fold = _given({**numbers, **switches, "ordering": ordering, "collisions": collisions})
     sizes = {"clearance": clearance, "thickness": thickness, "scale": _ratio(scale)}
-    machine = {"nozzle": nozzle, "layer": layer, "material": material}
-    options = _given({**sizes, **machine, "posture": posture, "hinge": hinge, "latch": latch})
+    options = _given({**sizes, **printing})
     way = {} if direction is None else {"direction": _vector(direction)}
     wrong = _check(FoldForm, fold)
-    problems = _check(_DirectionForm, way) + wrong + _check(PrintForm, _with_own(recipe, options)) + _check_printer(printer)
-    problems += _check_rigid(recipe, rigid) + _check_patterns(recipe, {} if wrong else fold, rigid)
+    problems = _check(_DirectionForm, way) + wrong + _check(PrintForm, _with_own(recipe, options))
+    problems += (
+        _check_printer(printer) + _check_rigid(recipe, rigid) + _check_patterns(recipe, {} if wrong else fold, rigid)
+    )
     if problems:
         raise RecipeError(SOURCE, tuple(problems))
     parts = tuple(replace(part, hingeable=False) if part.name in rigid else part for part in recipe.parts)

@@ -20,8 +20,9 @@ def test_the_folder_of_the_command(tmp_path: Path, capsys: pytest.CaptureFixture
     folder = tmp_path / "coupon"
     sheet = json.loads((folder / "sheet.json").read_text())
     found = read_threemf(folder / "coupon.3mf")
-    assert not found.warnings
-    assert sorted(body.name for body in found.bodies) == sorted(sheet["bodies"])
+    assert found.is_sound
+    assert found.warnings == 0
+    assert sorted(name for name, _, _ in found.volumes) == sorted(sheet["bodies"])
     assert len(list((folder / "stl").iterdir())) == len(sheet["bodies"]) == len(sheet["clearances_mm"]) + 1
     assert "foldfab calibrate --printer prusa-mini NUMBER" in capsys.readouterr().out
     before = {file: file.read_bytes() for file in folder.rglob("*") if file.is_file()}

@@ -160,6 +160,7 @@ def test_the_least_width_keeps_every_style_at_its_minima(kind: HingeKind) -> Non
     assert min(b - a for a, b in marks.follower) >= style.pin_knuckle - 1e-9
     assert marks.carrier[-1][1] == pytest.approx(thickness.hinge_width)
 
+
 def test_hinges_that_are_not_held_are_noticed(make_chain: Callable[..., Chain]) -> None:
     thickness = Thickness(4.0, 0.3)
     lower, upper = panels(make_chain(thickness, lengths=(20.0, 20.0)), thickness)
@@ -207,7 +208,7 @@ def assert_captive(a: Solid, b: Solid, thickness: Thickness) -> None:
 def loose_pin(chain: Chain, thickness: Thickness, hinge: int) -> Solid:
     """What is put into a hinge after printing, as far as it reaches: filament, or the shanks of screws."""
     radius = {"filament": 0.875, "screw-m2": 0.8, "screw-m3": 1.2}[thickness.hinge]
-    place = chain.root + [chain.offsets[hinge], 0.0, chain.lengths[:hinge].sum()]
+    place = chain.root + np.array([chain.offsets[hinge], 0.0, chain.lengths[:hinge].sum()])
     short = 1.0
     ends = [sorted(pin) for pin in knuckles(chain.hinge_spans[hinge], thickness).pins]
     return solids.union([solids.rod(radius, a + short, b - short, place[0], place[2]) for a, b in ends])

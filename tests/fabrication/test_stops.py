@@ -50,7 +50,9 @@ def test_a_hinge_without_its_stop_is_found(name: str, posture: str, assembled: C
 
 
 def test_open_prints_get_levers_and_folded_ones_close_faces(assembled: Callable[..., Assembly]) -> None:
-    kinds = {posture: {k for j in assembled("shelter", posture).joints for k in j.stops} for posture in ("open", "folded")}
+    kinds = {
+        posture: {k for j in assembled("shelter", posture).joints for k in j.stops} for posture in ("open", "folded")
+    }
     assert {"tongue", "lap"} <= kinds["open"]
     assert {"heel", "butt"} <= kinds["folded"]
 

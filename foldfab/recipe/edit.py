@@ -37,8 +37,6 @@ def override(
     direction: str | None = None,
     printer: str | None = None,
     scale: str | float | None = None,
-    clearance: str | float | None = None,
-    thickness: str | float | None = None,
     alpha: str | float | None = None,
     max_hinges: str | int | None = None,
     shrink_steps: str | int | None = None,
@@ -62,8 +60,7 @@ def override(
     numbers = {"alpha": alpha, "max_hinges": max_hinges, "shrink_steps": shrink_steps, "time_limit": time_limit}
     switches = {"slanting": slanting, "stay_in_box": stay_in_box, "symmetry": symmetry}
     fold = _given({**numbers, **switches, "ordering": ordering, "collisions": collisions})
-    sizes = {"clearance": clearance, "thickness": thickness, "scale": _ratio(scale)}
-    options = _given({**sizes, **printing})
+    options = _given({**printing, "scale": _ratio(scale)})
     way = {} if direction is None else {"direction": _vector(direction)}
     wrong = _check(FoldForm, fold)
     problems = _check(_DirectionForm, way) + wrong + _check(PrintForm, _with_own(recipe, options))

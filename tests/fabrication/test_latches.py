@@ -46,7 +46,7 @@ def test_it_holds_and_lets_go_on_the_solids(assembled: Callable[..., Assembly]) 
     without_ridges = solids.cut(base, [stop.detent.ridges])
     assert tried(range_, without_ridges, panel, stop.detent, is_base_first=is_first) is None
     middle = sum(solids.bounds(stop.detent.slit)) / 2
-    block = solids.box(middle + [-12.0, -6.0, -3.0], middle + [12.0, 6.0, 1.0])
+    block = solids.box(middle - np.array([12.0, 6.0, 3.0]), middle + np.array([12.0, 6.0, 1.0]))
     assert tried(range_, solids.union([base, block]), panel, stop.detent, is_base_first=is_first) is None
 
 

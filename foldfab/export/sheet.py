@@ -178,6 +178,7 @@ def _latch(latch: Latch) -> dict[str, float]:
         "holds_at_deg": _length(latch.holds_at),
         "moment_nmm": round(latch.moment, 1),
         "flex_mm": _length(latch.flex),
+        "gives_mm3": round(latch.gives, 3),
     }
 
 

@@ -34,6 +34,8 @@ SPARE = 0.03
 """How much further than `FLEX` a prong is pressed in to pass, mm: rounding."""
 HOLDS_WITHIN = 12.0
 """A latch that lets a hinge turn further than this before it meets the ridges is none, degrees."""
+PASSED = 40.0
+"""Well past the ridges, degrees."""
 STEP = 0.5
 """Degrees between the angles that are tried."""
 
@@ -86,11 +88,11 @@ def detent(half: float, front: float, reach: float, gap: float, low: float, high
 def tried(range_: Turn, base: Solid, panel: Solid, made: Detent, *, is_base_first: bool) -> Latch | None:
     """What a latch does on the solids; None where it does not hold, or does not pass with its prongs pressed in."""
     pressed = solids.cut(panel, [made.pressed])
-    angles = np.arange(STEP, HOLDS_WITHIN + STEP, STEP)
+    angles = np.arange(STEP, PASSED + STEP, STEP)
     shared = [_shared(range_, base, panel, angle, is_base_first) for angle in angles]
-    held = next((float(a) for a, s in zip(angles, shared, strict=True) if s > MEETS), None)
+    held = next((float(a) for a, s in zip(angles, shared, strict=True) if s > MEETS and a <= HOLDS_WITHIN), None)
     is_free = all(_shared(range_, base, pressed, angle, is_base_first) <= MEETS for angle in angles)
-    return Latch(held, made.moment, FLEX) if held is not None and is_free else None
+    return Latch(held, made.moment, FLEX, max(shared)) if held is not None and is_free else None
 
 
 def _shared(range_: Turn, base: Solid, panel: Solid, angle: float, is_base_first: bool) -> float:

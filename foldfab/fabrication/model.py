@@ -44,6 +44,8 @@ class Latch:
     """Up to which it holds, N·mm: a force times its arm from the axis."""
     flex: float
     """By how much its prongs give to let go, mm."""
+    gives: float
+    """What the halves share at most while it passes, as rigid bodies, mm³."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

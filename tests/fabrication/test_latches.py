@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from foldfab.export.check import inspect_folder
+from foldfab.export.write import write
 from foldfab.fabrication import solids
 from foldfab.fabrication.latches import FLEX, HOLDS_WITHIN, PRONG, SLIT, STIFFNESS, detent, tried
 from foldfab.fabrication.model import Assembly
@@ -72,3 +76,20 @@ def tongue(assembly: Assembly) -> Stop:
     """The tongue of the first leg."""
     chain = assembly.solution.chains[0]
     return next(iter(stops(assembly.solution, chain, 0, in_open=True)))
+
+
+def test_the_sheet_states_what_gives_and_the_check_lets_no_more_pass(
+    assembled: Callable[..., Assembly], tmp_path: Path
+) -> None:
+    write(assembled("table", latch=True), tmp_path / "table")
+    assert inspect_folder(tmp_path / "table").ok
+    sheet = tmp_path / "table" / "sheet.json"
+    facts = json.loads(sheet.read_text())
+    for row in facts["joints"]:
+        assert 0.05 < row["latch"].pop("gives_mm3") < 1.0
+        row["latch"]["gives_mm3"] = 0.0
+    sheet.write_text(json.dumps(facts))
+    assert [row.code for row in inspect_folder(tmp_path / "table").rows if not row.ok] == ["collide"]
+    facts["joints"][0]["latch"]["gives_mm3"] = 5.0
+    sheet.write_text(json.dumps(facts))
+    assert not inspect_folder(tmp_path / "table").ok

@@ -253,7 +253,7 @@ def _within(marks: tuple[Mark, ...], gap: float) -> Iterator[Mark]:
         if width >= SHARED:
             yield low + INSET, low + INSET + width
             yield high - INSET - width, high - INSET
-        elif room >= NARROWEST:
+        if room >= NARROWEST:
             width = min(room, WIDEST)
             yield (low + high - width) / 2, (low + high + width) / 2
 

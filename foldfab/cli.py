@@ -26,7 +26,11 @@ _OPTIONS: tuple[tuple[str, str, str], ...] = (
     ("--posture", "P", "print it open or folded"),
     ("--printer", "NAME", "a known printer such as prusa-mk4, or a build volume such as 200x200x180"),
     ("--scale", "S", 'print size over true size: "fit", a number, or a ratio such as 1:5'),
-    ("--clearance", "MM", "gap that a hinge is printed with, 0.15 to 1"),
+    ("--hinge", "STYLE", "cone or clip, printed in place; filament, screw-m2 or screw-m3, pinned after printing"),
+    ("--clearance", "MM", "gap that a hinge is printed with, 0.15 to 1; auto: by calibration or nozzle"),
+    ("--nozzle", "MM", "diameter of the nozzle (0.4)"),
+    ("--layer", "MM", "height of a layer (0.2)"),
+    ("--material", "M", "pla, petg, abs or nylon"),
     ("--thickness", "MM", "thickness of plates and panels, 2 to 20"),
     ("--base-thickness", "MM", "thickness of base plates, where it is another"),
     ("--alpha", "A", "weight of inserted hinges (1) against shrinking (0)"),
@@ -36,7 +40,7 @@ _OPTIONS: tuple[tuple[str, str, str], ...] = (
     ("--collisions", "C", "swept: shapes that meet in time; or regions: the paper's own test"),
     ("--time-limit", "SECONDS", "of work on an ordinary machine, up to 3600"),
 )
-_SWITCHES = ("slanting", "stay_in_box", "symmetry", "own_thickness")
+_SWITCHES = ("slanting", "stay_in_box", "symmetry", "own_thickness", "latch")
 _SLICER = "--slicer"
 _REPEATED = (("--rigid", "NAME", "a part that must not get a hinge in its middle; may be given again for others"),)
 
@@ -192,6 +196,26 @@ def _compose(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def _coupon(arguments: argparse.Namespace) -> int:
+    from foldfab import pipeline
+
+    folder = pipeline.coupon(
+        arguments.output, arguments.printer, thickness=arguments.thickness, posture=arguments.posture
+    )
+    print(f"Written to {folder}")
+    print("Print coupon.3mf, move every flap, and keep the least number that moves freely:")
+    print(f"  foldfab calibrate --printer {arguments.printer} NUMBER")
+    return 0
+
+
+def _calibrate(arguments: argparse.Namespace) -> int:
+    from foldfab import pipeline
+
+    file = pipeline.calibrate(arguments.printer, arguments.clearance)
+    print(f"{arguments.printer} prints hinges with {arguments.clearance:g} mm from now on ({file})")
+    return 0
+
+
 def _load(arguments: argparse.Namespace, progress: _Progress) -> Recipe:
     progress("reading")
     from foldfab import pipeline
@@ -252,6 +276,14 @@ def _parser() -> argparse.ArgumentParser:
     composing.add_argument("kind", metavar="KIND", help="bench, building, hexagon or shelf")
     composing.add_argument("grid", metavar="GRID", help="columns x rows, such as 4x4; at most 32x32")
     composing.add_argument("-o", "--output", metavar="FILE", help="where the recipe goes (KIND-GRID.json, here)")
+    trying = _command(commands, "coupon", _coupon, "the same hinge in a row of clearances, to calibrate a printer by")
+    trying.add_argument("--printer", metavar="NAME", required=True, help="a known printer or a build volume")
+    trying.add_argument("--posture", metavar="P", default="open", help="how its hinges are printed: open or folded")
+    trying.add_argument("--thickness", metavar="MM", default="4", help="thickness of its plates (4)")
+    trying.add_argument("-o", "--output", metavar="DIR", default="prints", help="where its folder goes (prints)")
+    keeping = _command(commands, "calibrate", _calibrate, "keep the clearance that a printer prints hinges well with")
+    keeping.add_argument("--printer", metavar="NAME", required=True, help="a known printer or a build volume")
+    keeping.add_argument("clearance", metavar="CLEARANCE", type=float, help="mm, 0.15 to 1")
     return parser
 
 
@@ -275,6 +307,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
         group.add_argument(option, metavar=metavar, action="append", help=text)
     group.add_argument("--no-slanting", dest="slanting", action="store_false", default=None, help="fold in place only")
     group.add_argument("--stay-in-box", action="store_true", default=None, help="stay within the bounding box")
+    group.add_argument("--latch", action="store_true", default=None, help="detents that hold base hinges open")
     group.add_argument("--symmetry", action="store_true", default=None, help="treat mirrored parts alike")
     group.add_argument("--own-thickness", action="store_true", default=None, help="parts as thick as they are, or more")
 

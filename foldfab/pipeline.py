@@ -44,12 +44,41 @@ def load(text: str, **overrides: Any) -> Recipe:
     Raises:
         RecipeError: every problem with the file or the options, each with its place.
     """
+    from foldfab.recipe.clearance import calibrated
     from foldfab.recipe.edit import override
     from foldfab.recipe.find import find
     from foldfab.recipe.read import read
 
     recipe = read(find(text))
-    return override(recipe, **overrides) if overrides else recipe
+    return calibrated(override(recipe, **overrides) if overrides else recipe)
+
+
+def coupon(folder: Path | str, printer: str, *, thickness: str | float, posture: str) -> Path:
+    """Writes a print folder `coupon` with the same hinge in a row of clearances; returns it.
+
+    Raises:
+        RecipeError: there is no such printer, thickness or posture.
+        FabricationError: no hinge of that thickness holds.
+        PrintFolderError: the folder cannot be written, or the coupon does not fit the printer.
+    """
+    from foldfab.export.coupon import write_coupon
+    from foldfab.fabrication.coupon import coupon as made
+    from foldfab.recipe.edit import known_print, known_printer
+
+    options = known_print(thickness=thickness, posture=posture)
+    return write_coupon(made(options.thickness, options.posture), known_printer(printer), Path(folder))
+
+
+def calibrate(printer: str, clearance: float) -> Path:
+    """Keeps the clearance (mm) that a printer prints hinges well with, from now on its default; returns the file.
+
+    Raises:
+        RecipeError: there is no such printer, or the clearance is out of range.
+    """
+    from foldfab.recipe.clearance import calibrate as keep
+    from foldfab.recipe.edit import known_printer
+
+    return keep(known_printer(printer).name, clearance)
 
 
 def compose(kind: str, grid: str) -> Recipe:

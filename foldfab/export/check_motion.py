@@ -76,7 +76,11 @@ def _rigid(motion: Motion, stated: Stated) -> Row:
 
 
 def _collide(motion: Motion, stated: Stated) -> Row:
-    """O(FRAMES · near pairs); a pair that moves as one since it was last looked at is passed over."""
+    """O(FRAMES · near pairs); a pair that moves as one since it was last looked at is passed over.
+
+    Where a latch passes, its prongs give what the sheet states; rigid bodies share that.
+    """
+    gives = {frozenset(joint.parts): joint.gives for joint in stated.joints}
     names = sorted(motion.solids)
     looked: dict[tuple[int, int], Array] = {}
     clashes: dict[tuple[int, int], tuple[float, int]] = {}
@@ -89,7 +93,8 @@ def _collide(motion: Motion, stated: Stated) -> Row:
             looked[pair] = relative
             a, b = (motion.solids[names[number]].manifold for number in pair)
             overlap = (a ^ b.transform(relative[:3])).volume()
-            if overlap > max(OVERLAP_MM3, clashes.get(pair, (0.0, 0))[0]):
+            given = gives.get(frozenset((names[pair[0]], names[pair[1]])), 0.0)
+            if overlap > max(OVERLAP_MM3 + 1.1 * given, clashes.get(pair, (0.0, 0))[0]):
                 clashes[pair] = overlap, k
     worst = sorted(clashes.items(), key=lambda item: -item[1][0])
     texts = [f"{names[i]} and {names[j]} by {v:.1f} mm³ at {100 * k / FRAMES:.0f} %" for (i, j), (v, k) in worst]

@@ -11,7 +11,8 @@ from foldfab.export.frames import moved, sheet_poses, to_sheet
 from foldfab.export.provenance import provenance
 from foldfab.export.shell import Shell
 from foldfab.export.version import foldfab_version
-from foldfab.fabrication.model import Assembly, Joint
+from foldfab.fabrication.model import Assembly, Joint, Latch
+from foldfab.fabrication.snaps import Snap, snaps
 from foldfab.folding.model import Modification
 from foldfab.geometry.arrays import Array
 
@@ -39,6 +40,7 @@ def facts(assembly: Assembly, shells: tuple[Shell, ...], stl_paths: dict[str, st
         "components": component_count([shell.name for shell in shells], assembly.joints),
         "parts": _parts(assembly, shells, stl_paths),
         "joints": [_joint(assembly, joint) for joint in assembly.joints],
+        "snaps": [_snap(snap) for snap in snaps(assembly.solution)],
         "findings": [{"code": finding.code, "text": finding.text} for finding in assembly.findings],
     }
 
@@ -76,7 +78,9 @@ def _print(assembly: Assembly) -> dict[str, Any]:
         "direction": _unit(scaffold.direction),
         "scale": float(scaffold.scale),
         "thickness_mm": _length(max((c.panel for c in assembly.solution.chains), default=thickness.panel)),
+        "hinge": thickness.hinge,
         "clearance_mm": _length(thickness.gap),
+        "clearance_from": scaffold.recipe.print.clearance_from,
         "printer": {"name": printer.name, "build_volume_mm": _lengths(np.array(printer.build_volume))},
         "print_files": [f"{scaffold.recipe.name}.3mf"],
     }
@@ -165,6 +169,28 @@ def _joint(assembly: Assembly, joint: Joint) -> dict[str, Any]:
         "radius_mm": _length(joint.radius),
         "range_deg": [_length(angle) for angle in joint.range_deg],
         "inserted": joint.is_inserted,
+        "stop_deg": list(joint.stop_deg),
+        "stops": list(joint.stops),
+        **({} if joint.latch is None else {"latch": _latch(joint.latch)}),
+    }
+
+
+def _latch(latch: Latch) -> dict[str, float]:
+    return {
+        "holds_at_deg": _length(latch.holds_at),
+        "moment_nmm": round(latch.moment, 1),
+        "flex_mm": _length(latch.flex),
+        "gives_mm3": round(latch.gives, 3),
+    }
+
+
+def _snap(snap: Snap) -> dict[str, Any]:
+    return {
+        "patch": snap.patch,
+        "rise_mm": _length(snap.rise),
+        "estimate_mm": None if snap.estimate is None else _length(snap.estimate),
+        "play_mm": _length(snap.play),
+        "play_limit_mm": _length(snap.limit),
     }
 
 

@@ -10,6 +10,9 @@ from typing import Any
 from foldfab.errors import PrintFolderError
 from foldfab.geometry.arrays import Array, frozen
 
+MOST_GIVEN = 1.0
+"""More than this is no latch but a collision, mm³."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StatedPart:
@@ -36,6 +39,8 @@ class StatedJoint:
     radius: float
     """Of its knuckles, mm."""
     range_deg: tuple[float, float]
+    gives: float = 0.0
+    """What its parts may share while a latch passes, mm³."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,8 +152,11 @@ def _joint(row: dict[str, Any], names: set[str]) -> StatedJoint:
     if not {a, b} <= names or a == b:
         raise ValueError(f"joint {row['name']} does not join two of the parts")
     low, high = row["range_deg"]
-    axis = frozen(row["axis"], 2, 3)
-    return StatedJoint(_text(row["name"]), (a, b), axis, _number(row["radius_mm"]), (_number(low), _number(high)))
+    gives = _number(row["latch"]["gives_mm3"]) if "latch" in row else 0.0
+    if not 0 <= gives <= MOST_GIVEN:
+        raise ValueError(f"the latch of {row['name']} would give {gives:g} mm³")
+    axis, radius = frozen(row["axis"], 2, 3), _number(row["radius_mm"])
+    return StatedJoint(_text(row["name"]), (a, b), axis, radius, (_number(low), _number(high)), gives)
 
 
 def _term(row: dict[str, Any]) -> StatedTerm:

@@ -16,7 +16,6 @@ from foldfab.export.colours import COLOURS, HINGE, NAMES
 from foldfab.export.frames import sheet_poses, to_sheet
 from foldfab.export.step_order import canonical
 from foldfab.fabrication.analytic import analytic, require
-from foldfab.fabrication.build import shapes
 from foldfab.fabrication.model import Assembly, Body, Joint
 from foldfab.fabrication.shapes import Shape, placed
 from foldfab.geometry.arrays import Array
@@ -47,8 +46,8 @@ def compound(assembly: Assembly) -> build123d.Compound:
     require()
     import build123d as b3d
 
-    described, known = shapes(assembly.solution)[0], dict[Shape, b3d.Shape]()
-    bodies = {body.name: _body(assembly, body, described[body.name], known) for body in assembly.bodies}
+    known: dict[Shape, b3d.Shape] = {}
+    bodies = {body.name: _body(assembly, body, assembly.shapes[body.name], known) for body in assembly.bodies}
     for joint in assembly.joints:
         _join(assembly, joint, bodies)
     lines = b3d.Compound(label=AXES, children=[_line(assembly, joint) for joint in assembly.joints])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -15,11 +16,14 @@ from foldfab.fabrication.panels import panels
 from foldfab.fabrication.plates import axis_of, plate
 from foldfab.fabrication.printed import printed
 from foldfab.fabrication.shapes import Shape
+from foldfab.fabrication.snaps import snap_findings
 from foldfab.fabrication.solids import Solid
+from foldfab.fabrication.stopping import stopped
 from foldfab.folding.kinematics import configuration, key_times
 from foldfab.folding.mechanism import frames, joints, tilts
 from foldfab.folding.model import Chain, FoldSolution
 from foldfab.geometry.arrays import Array, Indices
+from foldfab.recipe.hinges import hinge_problem
 from foldfab.recipe.model import Posture
 
 Progress = Callable[[str, float], None]
@@ -36,25 +40,34 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
         FabricationError: a finding means that the print would not work; it says which part and what to change.
     """
     tell = progress or (lambda what, share: None)
+    options = solution.scaffold.recipe.print
+    problem = hinge_problem(options.hinge, options.thickness, posture)
+    if problem:
+        raise FabricationError(problem)
     tell("solids", 0.0)
-    described, findings = shapes(solution)
+    described, findings = _shapes(solution)
     made = _solids(described)
+    findings += snap_findings(solution)
     times = key_times(solution)
     poses = configuration(solution, times)
     found = tuple(_joints(solution))
-    bodies = tuple(_body(solution, name, made[name]) for name in sorted(made))
     findings += [Finding("note", note) for note in solution.notes]
-    draft = Assembly(solution, bodies, found, times, {n: poses[n] for n in made}, posture, ())
-    findings += inspect(draft, made, lambda share: tell("inspection", share))
+    draft = Assembly(solution, (), found, times, {n: poses[n] for n in made}, posture, (), described)
+    tell("stops", 0.0)
+    held = stopped(draft, made)
+    made = held.made
+    bodies = tuple(_body(solution, name, made[name]) for name in sorted(made))
+    draft = replace(draft, bodies=bodies, joints=held.joints, shapes=held.shapes)
+    findings += inspect(draft, made, lambda share: tell("inspection", share), held.gives)
     fatal = [f for f in findings if f.is_fatal]
     if fatal:
         told = "".join(f"\n  {f.code}: {f.text}" for f in fatal[:12])
         more = f"\n  and {len(fatal) - 12} more" if len(fatal) > 12 else ""
         raise FabricationError(f"this print would not work:{told}{more}")
-    return Assembly(solution, bodies, found, times, {n: poses[n] for n in made}, posture, tuple(findings))
+    return replace(draft, findings=tuple(findings))
 
 
-def shapes(solution: FoldSolution) -> tuple[dict[str, Shape], list[Finding]]:
+def _shapes(solution: FoldSolution) -> tuple[dict[str, Shape], list[Finding]]:
     """By body, what it is made of in the open posture, canonical frame, mm; and the findings on the way."""
     made: dict[str, Shape] = {}
     findings = []

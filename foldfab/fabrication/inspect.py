@@ -8,15 +8,18 @@ relative pose has changed, so a fold costs as many booleans as there are moving 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 
 import numpy as np
 
 from foldfab.fabrication import solids
 from foldfab.fabrication.model import Assembly, Finding
 from foldfab.fabrication.solids import Solid
+from foldfab.fabrication.turning import PAST, meets, stops_at, turn
 from foldfab.folding.kinematics import configuration
 from foldfab.geometry.arrays import Array
+from foldfab.recipe.hinges import STYLES
 
 CLASH = 0.01
 """Shared volume below this is rounding, mm³."""
@@ -30,19 +33,34 @@ HELD = 0.02
 """Halves that share this volume hold each other, mm³."""
 TIGHT = 0.1
 """A clearance that always holds, as a share of the plates' thickness."""
+MOST_NAMES = 4
+"""More hinges than these are counted, not listed."""
 STILL = 1e-7
 """Relative poses that differ by less are the same."""
 
 
-def inspect(assembly: Assembly, made: dict[str, Solid], tell: Callable[[float], None]) -> list[Finding]:
-    """All findings about the assembly; fatal where it would not print or not fold."""
+def inspect(
+    assembly: Assembly,
+    made: dict[str, Solid],
+    tell: Callable[[float], None],
+    gives: Mapping[str, list[Solid]] = MappingProxyType({}),
+) -> list[Finding]:
+    """All findings about the assembly; fatal where it would not print or not fold.
+
+    `gives` is what of a panel gives way while it passes a latch: it is not there while the fold is tried.
+    """
     findings = _soundness(made)
     findings += _fits(assembly)
     if not any(f.is_fatal for f in findings):
         findings += _gaps(assembly, made)
-        findings += _fold(assembly, made, tell)
+        folding = {name: solids.cut(solid, gives.get(name, [])) for name, solid in made.items()}
+        findings += _fold(assembly, folding, tell)
+        findings += _latches(assembly)
         findings += _axes(assembly)
-        findings += _captive(assembly, made)
+        findings += _stops(assembly, made)
+        # A pin that is put in later is not there yet to hold its hinge.
+        if not STYLES[assembly.solution.thickness.hinge].has_loose_pin:
+            findings += _captive(assembly, made)
     return findings
 
 
@@ -123,7 +141,7 @@ def _gaps(assembly: Assembly, made: dict[str, Solid]) -> list[Finding]:
 
 
 def _fold(assembly: Assembly, made: dict[str, Solid], tell: Callable[[float], None]) -> list[Finding]:
-    times = _instants(assembly)
+    times = instants(assembly)
     poses = configuration(assembly.solution, times)
     corners = {n: _corners(*solids.bounds(s)) for n, s in made.items()}
     last: dict[tuple[str, str], Array] = {}
@@ -181,15 +199,54 @@ def _captive(assembly: Assembly, made: dict[str, Solid]) -> list[Finding]:
         if kind in tried:
             continue
         tried.add(kind)
-        reach = max(PULL_GAPS * gap, joint.radius)
         a, b = (made[name] for name in joint.parts)
-        if any(solids.overlap(a, b.translate((way * reach).tolist())) <= HELD for way in _pulls(along)):
+        if not is_captive(a, b, joint.axis, joint.radius, gap):
             text = (
                 f"{joint.name} can be pulled apart, because a clearance of {gap:g} mm is too much for plates of "
                 f"{2 * joint.radius:g} mm; print with a clearance of {TIGHT * 2 * joint.radius:.2f} mm or thicker"
             )
             findings.append(Finding("loose", text, is_fatal=True))
     return findings
+
+
+def is_captive(a: Solid, b: Solid, axis: Array, radius: float, gap: float) -> bool:
+    """Whether the halves of a hinge around an axis (2, 3) meet when they are pulled apart, whichever way."""
+    reach = max(PULL_GAPS * gap, radius)
+    return all(solids.overlap(a, b.translate((way * reach).tolist())) > HELD for way in _pulls(axis[1] - axis[0]))
+
+
+def _stops(assembly: Assembly, made: dict[str, Solid]) -> list[Finding]:
+    """Every hinge meets material when it is turned on past the ends of its range, both halves alone."""
+    free: dict[tuple[str, float | None], list[str]] = {}
+    for joint in assembly.joints:
+        a, b = joint.parts
+        range_ = turn(joint, assembly.poses[a], assembly.poses[b])
+        ends = ("straight" if joint.is_inserted else "where it stands open", "where it lies folded")
+        for is_folded, end in enumerate(ends):
+            if not meets(range_, made[a], made[b], PAST, is_folded=bool(is_folded)):
+                angle = stops_at(range_, made[a], made[b], is_folded=bool(is_folded))
+                free.setdefault((end, angle), []).append(joint.name)
+    return [_unstopped(end, angle, names) for (end, angle), names in free.items()]
+
+
+def _latches(assembly: Assembly) -> list[Finding]:
+    """Base hinges that were to be held open and are not."""
+    if not assembly.solution.scaffold.recipe.print.latch:
+        return []
+    free = [joint.name for joint in assembly.joints if not joint.is_inserted and joint.latch is None]
+    told = _told(free)
+    return [Finding("latch", f"no room for a latch at {told}; wider or thicker parts have it")] if free else []
+
+
+def _told(names: list[str]) -> str:
+    return ", ".join(names[:MOST_NAMES]) + (f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else "")
+
+
+def _unstopped(end: str, angle: float | None, names: list[str]) -> Finding:
+    told = _told(names)
+    how_far = "as far as one likes" if angle is None else f"{angle:g}°"
+    text = f"no room for a stop within {PAST:g}°: {told} can be turned {how_far} past {end}"
+    return Finding("stop", text if angle is None else f"{text}; thicker plates or less clearance would make it less")
 
 
 def _pulls(along: Array) -> list[Array]:
@@ -202,7 +259,8 @@ def _pulls(along: Array) -> list[Array]:
     return [axis, -axis, *(np.cos(t) * side + np.sin(t) * other for t in turns)]
 
 
-def _instants(assembly: Assembly) -> Array:
+def instants(assembly: Assembly) -> Array:
+    """(k,) the times at which a fold is looked at."""
     marks = [np.linspace(s.start, s.end, FRAMES_PER_STEP * _sections(s.travel) + 1) for s in assembly.solution.steps]
     found: Array = np.unique(np.concatenate([np.linspace(0.0, 1.0, 31), *marks]))
     return found

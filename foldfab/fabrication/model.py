@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
+from foldfab.fabrication.shapes import Shape
 from foldfab.folding.model import FoldSolution
 from foldfab.geometry.arrays import Array, Indices, frozen, frozen_indices
 from foldfab.recipe.model import Posture
@@ -34,6 +35,20 @@ class Body:
         object.__setattr__(self, "hinge_faces", frozen_indices(self.hinge_faces, -1))
 
 
+@dataclass(frozen=True, slots=True)
+class Latch:
+    """What holds a hinge in its open place."""
+
+    holds_at: float
+    """How far it turns towards folded before the latch holds it, degrees."""
+    moment: float
+    """Up to which it holds, N·mm: a force times its arm from the axis."""
+    flex: float
+    """By how much its prongs give to let go, mm."""
+    gives: float
+    """What the halves share at most while it passes, as rigid bodies, mm³."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Joint:
     """One hinge between two bodies."""
@@ -48,6 +63,12 @@ class Joint:
     """How far it may turn from the open posture."""
     is_inserted: bool
     """True where it splits a patch, False where it joins a patch to a base."""
+    stop_deg: tuple[float | None, float | None] = (None, None)
+    """How far past its open and its folded end it turns before its halves meet; None where they never do."""
+    stops: tuple[str, ...] = ()
+    """What was added to stop it: `tongue`, `lap`, `heel`, `butt`, `rest`."""
+    latch: Latch | None = None
+    """What holds it open, where that was asked for."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "axis", frozen(self.axis, 2, 3))
@@ -82,6 +103,8 @@ class Assembly:
     posture: Posture
     """How the print file is laid out."""
     findings: tuple[Finding, ...]
+    shapes: dict[str, Shape] = field(default_factory=dict)
+    """By body, what it is made of, open posture, canonical frame, mm."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "times", frozen(self.times, -1))

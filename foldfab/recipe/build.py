@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from foldfab.geometry.arrays import Array
+from foldfab.recipe.clearance import profile
 from foldfab.recipe.form import MILLIMETRES, FoldForm, PartForm, PatternForm, PrinterForm, PrintForm, RecipeForm
 from foldfab.recipe.model import FoldOptions, Part, Pattern, Printer, PrintOptions, Recipe
 from foldfab.recipe.patterns import snapped
@@ -25,7 +26,7 @@ def build(form: RecipeForm, name: str, source: str) -> Recipe:
         direction=unit_direction(form.direction),
         parts=tuple(_part(part, factor, form.fold.shrink_steps) for part in form.parts),
         fold=_fold(form.fold),
-        print=_print(form.print),
+        print=build_print(form.print),
         about=form.about,
         source=source,
     )
@@ -93,14 +94,23 @@ def _fold(form: FoldForm) -> FoldOptions:
     )
 
 
-def _print(form: PrintForm) -> PrintOptions:
+def build_print(form: PrintForm) -> PrintOptions:
+    """The options of a print that a valid form describes."""
+    is_auto = form.clearance == "auto"
+    clearance = profile(form.nozzle, form.layer, form.material) if is_auto else float(form.clearance)
     return PrintOptions(
         printer=_printer(form.printer),
         thickness=float(form.thickness),
         base_thickness=None if form.base_thickness is None else float(form.base_thickness),
         own_thickness=form.own_thickness,
-        clearance=float(form.clearance),
+        clearance=clearance,
+        clearance_from="profile" if is_auto else "recipe",
+        nozzle=float(form.nozzle),
+        layer=float(form.layer),
+        material=form.material,
         posture=form.posture,
+        hinge=form.hinge,
+        latch=form.latch,
         scale=None if form.scale == "fit" else float(form.scale),
     )
 

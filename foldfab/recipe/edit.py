@@ -11,9 +11,10 @@ from typing import Any
 from pydantic import ValidationError
 
 from foldfab.errors import Problem, RecipeError
-from foldfab.recipe.build import unit_direction
+from foldfab.recipe.build import build_print, unit_direction
+from foldfab.recipe.clearance import profile
 from foldfab.recipe.form import Direction, FoldForm, Form, PrintForm
-from foldfab.recipe.model import Part, Pattern, Recipe
+from foldfab.recipe.model import Part, Pattern, Printer, PrintOptions, Recipe
 from foldfab.recipe.names import same_name
 from foldfab.recipe.patterns import hinges_problem, rigid_problem, window_problem
 from foldfab.recipe.printers import printer as find_printer
@@ -55,7 +56,9 @@ def override(
         raise TypeError(f"there is no option {sorted(unknown)}")
     way = {} if direction is None else {"direction": _vector(direction)}
     wrong = _check(FoldForm, fold)
-    problems = _check(_DirectionForm, way) + wrong + _check(PrintForm, made) + _check_printer(printer)
+    problems = (
+        _check(_DirectionForm, way) + wrong + _check(PrintForm, _with_own(recipe, made)) + _check_printer(printer)
+    )
     problems += _check_rigid(recipe, rigid) + _check_patterns(recipe, {} if wrong else fold, rigid)
     if problems:
         raise RecipeError(SOURCE, tuple(problems))
@@ -69,6 +72,14 @@ def _of(form: type[Form], options: Mapping[str, Any]) -> dict[str, Any]:
     return {key: _number(value) if isinstance(value, str) else value for key, value in present.items()}
 
 
+def _with_own(recipe: Recipe, options: dict[str, Any]) -> dict[str, Any]:
+    """The options with the recipe's own that others are judged by."""
+    if not options.keys() & {"thickness", "posture", "hinge"}:
+        return options
+    own = recipe.print
+    return {"thickness": own.thickness, "posture": own.posture, "hinge": own.hinge, **options}
+
+
 def _replaced(
     recipe: Recipe, way: dict[str, Any], fold: dict[str, Any], options: dict[str, Any], printer: str | None
 ) -> Recipe:
@@ -78,12 +89,23 @@ def _replaced(
         options["scale"] = None
     if printer is not None:
         options["printer"] = find_printer(printer)
+    options |= _clearance(recipe, options)
     return replace(
         recipe,
         direction=unit_direction(way["direction"]) if way else recipe.direction,
         fold=replace(recipe.fold, **fold),
         print=replace(recipe.print, **options),
     )
+
+
+def _clearance(recipe: Recipe, options: dict[str, Any]) -> dict[str, Any]:
+    """The clearance and where it comes from; by profile anew where it is not the recipe's own."""
+    if options.get("clearance", "auto") != "auto":
+        return {"clearance_from": "command line"}
+    if "clearance" not in options and recipe.print.clearance_from != "profile":
+        return {}
+    machine = [options.get(name, getattr(recipe.print, name)) for name in ("nozzle", "layer", "material")]
+    return {"clearance": profile(*machine), "clearance_from": "profile"}
 
 
 def _number(text: str) -> int | float | str:
@@ -115,6 +137,31 @@ def _check(form: type[Form], given: dict[str, Any]) -> list[Problem]:
     except ValidationError as error:
         return [Problem(_option(problem.place), problem.text) for problem in problems_of(error)]
     return []
+
+
+def known_printer(text: str) -> Printer:
+    """The printer of that name or build volume.
+
+    Raises:
+        RecipeError: there is none.
+    """
+    problems = _check_printer(text)
+    if problems:
+        raise RecipeError(SOURCE, tuple(problems))
+    return find_printer(text)
+
+
+def known_print(**options: Any) -> PrintOptions:
+    """The options of a print from texts, on the default printer.
+
+    Raises:
+        RecipeError: every value that is not allowed.
+    """
+    given = _of(PrintForm, options)
+    problems = _check(PrintForm, given)
+    if problems:
+        raise RecipeError(SOURCE, tuple(problems))
+    return build_print(PrintForm.model_validate(given))
 
 
 def _check_printer(text: str | None) -> list[Problem]:

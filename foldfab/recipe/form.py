@@ -23,7 +23,9 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
-from foldfab.recipe.model import Collisions, FoldOptions, Mechanism, Ordering, Pattern, Posture, PrintOptions
+from foldfab.recipe.clearance import LEAST, MOST
+from foldfab.recipe.hinges import HingeKind, hinge_problem
+from foldfab.recipe.model import Collisions, FoldOptions, Material, Mechanism, Ordering, Pattern, Posture, PrintOptions
 from foldfab.recipe.model import Side as FoldSide
 from foldfab.recipe.names import folder_name_problem, has_control_characters, part_name_problem
 from foldfab.recipe.patterns import hinges_problem, is_covered, pattern_problem, rigid_problem, window_problem
@@ -116,6 +118,11 @@ def _allowed_hinges(hinges: int, info: ValidationInfo) -> int:
     return hinges
 
 
+def _makeable(hinge: HingeKind, info: ValidationInfo) -> HingeKind:
+    _complain(hinge_problem(hinge, info.data.get("thickness"), info.data.get("posture")))
+    return hinge
+
+
 def _known_printer(text: str) -> str:
     known = ", ".join(PRINTERS)
     own = '{"name": "mine", "build_volume": [200, 200, 180]}'
@@ -141,9 +148,13 @@ Scale = Annotated[
     Annotated[Literal["fit"], Tag("<fit>")] | Annotated[float, Field(ge=1e-5, le=1e3), Tag("<number>")],
     Discriminator(lambda value: "<fit>" if isinstance(value, str) else "<number>"),
 ]
+Clearance = Annotated[
+    Annotated[Literal["auto"], Tag("<auto>")] | Annotated[float, Field(ge=LEAST, le=MOST), Tag("<number>")],
+    Discriminator(lambda value: "<auto>" if isinstance(value, str) else "<number>"),
+]
 
 
-TAGS = ("<axis>", "<vector>", "<fit>", "<number>", "<id>", "<own>")
+TAGS = ("<auto>", "<axis>", "<vector>", "<fit>", "<number>", "<id>", "<own>")
 """What keeps the branches of unions apart; left out of places."""
 
 
@@ -275,10 +286,17 @@ class PrintForm(Form):
         default=_PRINT.own_thickness,
         description="Whether each part is as thick as it is at print scale, but no thinner than said above.",
     )
-    clearance: float = Field(
-        default=_PRINT.clearance, ge=0.15, le=1, description="Gap that a hinge is printed with, mm."
+    clearance: Clearance = Field(
+        default="auto", description="Gap that a hinge is printed with, mm; auto is by calibration, nozzle and material."
     )
+    nozzle: float = Field(default=_PRINT.nozzle, ge=0.1, le=1.5, description="Diameter of the nozzle, mm.")
+    layer: float = Field(default=_PRINT.layer, ge=0.03, le=1, description="Height of a layer, mm.")
+    material: Material = Field(default=_PRINT.material, description="What it is printed of.")
     posture: Posture = Field(default=_PRINT.posture, description="Whether it is printed open or folded.")
+    hinge: Annotated[HingeKind, AfterValidator(_makeable)] = Field(
+        default=_PRINT.hinge, description="How hinges are pinned together."
+    )
+    latch: bool = Field(default=_PRINT.latch, description="Whether a detent holds the furniture open.")
     scale: Scale = Field(default="fit", description="Print size over true size; fit is the largest on the printer.")
 
 

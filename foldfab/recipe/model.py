@@ -6,12 +6,15 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from foldfab.geometry.arrays import Array, frozen
+from foldfab.recipe.hinges import HingeKind
 
 Posture = Literal["open", "folded"]
 Ordering = Literal["greedy", "optimal"]
 Collisions = Literal["swept", "regions"]
 Mechanism = Literal["in-place", "slanted", "deleted"]
 Side = Literal["l", "r"]
+Material = Literal["pla", "petg", "abs", "nylon"]
+Source = Literal["recipe", "command line", "profile", "calibration"]
 
 _SAME_EDGE = 1e-9
 """Shares of the width that are closer than this are the same cutting point."""
@@ -120,7 +123,18 @@ class PrintOptions:
     """Whether each part is as thick as it is at print scale, and only where that is less as thick as said above."""
     clearance: float = 0.3
     """g, the gap that a hinge is printed with, mm in print."""
+    clearance_from: Source = field(default="profile", compare=False)
+    """Who said so: the profile of nozzle, layer and material, or the printer's calibration, where nobody else did."""
+    nozzle: float = 0.4
+    """mm."""
+    layer: float = 0.2
+    """Height of a layer, mm."""
+    material: Material = "pla"
     posture: Posture = "open"
+    hinge: HingeKind = "cone"
+    """How the knuckles of a hinge are pinned together."""
+    latch: bool = False
+    """Whether base hinges get a detent that holds them open."""
     scale: float | None = None
     """Print size over true size; None is the largest that fits the printer."""
 

@@ -77,8 +77,13 @@ EXPECTED = MappingProxyType(
         "thickness": "a number of millimetres from 2 to 20",
         "base_thickness": "a number of millimetres from 2 to 20",
         "own_thickness": "true or false",
-        "clearance": "a number of millimetres from 0.15 to 1",
+        "clearance": '"auto" or a number of millimetres from 0.15 to 1',
+        "nozzle": "a number of millimetres from 0.1 to 1.5",
+        "layer": "a number of millimetres from 0.03 to 1",
+        "material": '"pla", "petg", "abs" or "nylon"',
         "posture": '"open" or "folded"',
+        "hinge": '"cone", "filament", "screw-m2", "screw-m3" or "clip"',
+        "latch": "true or false",
         "scale": '"fit" or a number from 0.00001 to 1000, such as 0.2',
     }
 )
@@ -104,6 +109,8 @@ _NOT_YET = MappingProxyType(
         ("parts[]", "mesh"): 'meshes are not read yet; give the part a "box" with "center" and "size"',
     }
 )
+SLIP = 0.9
+"""Keys this alike are the same but for a slip, even where the key belongs elsewhere as well."""
 _STANDS_FOR = MappingProxyType({"parts": "model", "box": "mesh"})
 
 
@@ -184,10 +191,10 @@ def _unknown_key(key: str, parent: str) -> str:
         return _NOT_YET[parent, key]
     known = keys(FORMS[parent])
     homes = [other or "the top level" for other, form in FORMS.items() if key in keys(form)]
-    if homes:
+    close = get_close_matches(key.lower(), known, n=1, cutoff=SLIP if homes else 0.6)
+    if homes and not close:
         # What a part may override is told of the place where it holds for all.
         return f"is not known here; it belongs in {homes[-1] if homes[0] == 'parts[]' else homes[0]}"
-    close = get_close_matches(key.lower(), known, n=1)
     if close:
         return f'is not known here; did you mean "{close[0]}"?'
     return f"is not known here; known are {', '.join(known)}"

@@ -77,7 +77,12 @@ def _print(options: PrintOptions) -> dict[str, Any]:
         "base_thickness": options.base_thickness,
         "own_thickness": options.own_thickness,
         "clearance": options.clearance,
+        "nozzle": options.nozzle,
+        "layer": options.layer,
+        "material": options.material,
         "posture": options.posture,
+        "hinge": options.hinge,
+        "latch": options.latch,
         "scale": "fit" if options.scale is None else options.scale,
     }
 

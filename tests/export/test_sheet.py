@@ -20,7 +20,9 @@ FIELDS = [
     "direction",
     "scale",
     "thickness_mm",
+    "hinge",
     "clearance_mm",
+    "clearance_from",
     "printer",
     "print_files",
     "size_open_mm",
@@ -35,6 +37,7 @@ FIELDS = [
     "components",
     "parts",
     "joints",
+    "snaps",
     "findings",
 ]
 

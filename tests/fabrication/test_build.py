@@ -59,7 +59,7 @@ def test_hinge_faces_lie_at_the_inserted_hinge_only(assembled: Callable[..., Ass
 def test_progress_is_told(assembled: Callable[..., Assembly]) -> None:
     told: list[tuple[str, float]] = []
     room.build(assembled("table").solution, "open", lambda what, share: told.append((what, share)))
-    assert {what for what, _ in told} == {"solids", "inspection"}
+    assert {what for what, _ in told} == {"solids", "stops", "inspection"}
     assert all(0.0 <= share <= 1.0 for _, share in told)
 
 
@@ -74,7 +74,7 @@ def test_a_print_that_would_not_work_is_an_error(assembled: Callable[..., Assemb
 
 def test_the_error_lists_the_findings(assembled: Callable[..., Assembly], monkeypatch: pytest.MonkeyPatch) -> None:
     findings = [Finding("clash", f"part {i} meets its neighbour", is_fatal=i > 0) for i in range(15)]
-    monkeypatch.setattr(room, "inspect", lambda assembly, made, tell: findings)
+    monkeypatch.setattr(room, "inspect", lambda assembly, made, tell, gives: findings)
     with pytest.raises(FabricationError) as raised:
         room.build(assembled("table").solution, "open")
     lines = str(raised.value).splitlines()

@@ -1,0 +1,79 @@
+"""Every hinge gets its stops, where there is room for them; what each then turns to is measured."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+
+from foldfab.fabrication.model import Assembly, Joint, Latch
+from foldfab.fabrication.shapes import Shape
+from foldfab.fabrication.solids import Solid
+from foldfab.fabrication.stops import Stop, rests, stops
+from foldfab.fabrication.trial import Trial
+from foldfab.fabrication.turning import PAST
+from foldfab.folding.model import Chain
+
+
+@dataclass(frozen=True, slots=True)
+class Stopped:
+    """Bodies and joints with their stops and latches."""
+
+    made: dict[str, Solid]
+    shapes: dict[str, Shape]
+    """What each body is made of."""
+    joints: tuple[Joint, ...]
+    """With what each reaches."""
+    gives: dict[str, list[Solid]]
+    """By panel, what of it gives way while it passes its latches."""
+
+
+def stopped(assembly: Assembly, made: dict[str, Solid]) -> Stopped:
+    """The bodies with stops and, where they are asked for, latches.
+
+    `assembly` needs no bodies yet, but the shapes of which `made` was made.
+    """
+    trial = Trial(assembly, made)
+    taken: dict[str, tuple[str, ...]] = {joint.name: () for joint in assembly.joints}
+    latches: dict[str, Latch | None] = {}
+    is_latched = assembly.solution.scaffold.recipe.print.latch
+    for chain, hinge, name in _hinges(assembly):
+        ways = (
+            (False, stops(assembly.solution, chain, hinge, in_open=assembly.posture == "open")),
+            (True, rests(assembly.solution, chain, hinge)),
+        )
+        for is_folded, candidates in ways:
+            best = _best(trial, name, candidates, is_folded)
+            if best is not None:
+                trial.take(best)
+                taken[name] = (*taken[name], best.kind)
+                latches |= {name: trial.latch(best)} if is_latched and best.detent else {}
+    joints = tuple(
+        replace(j, stop_deg=_angles(trial, j.name), stops=taken[j.name], latch=latches.get(j.name))
+        for j in assembly.joints
+    )
+    return Stopped(trial.made, trial.shapes, joints, trial.gives)
+
+
+def _hinges(assembly: Assembly) -> Iterator[tuple[Chain, int, str]]:
+    for chain in assembly.solution.chains:
+        bodies = [chain.anchor, *chain.panels, *([chain.far] if chain.far else [])]
+        for hinge in range(len(bodies) - 1):
+            yield chain, hinge, f"{bodies[hinge]}~{bodies[hinge + 1]}"
+
+
+def _best(trial: Trial, joint: str, candidates: Iterable[Stop], is_folded: bool) -> Stop | None:
+    """The first stop that works within `PAST`, or the one that works soonest; None where none is needed or helps."""
+    now = trial.angle(joint, is_folded=is_folded)
+    if now is not None and now <= PAST:
+        return None
+    found: list[tuple[float, Stop]] = []
+    for stop in candidates:
+        angle = trial.better(stop)
+        if angle is not None and angle <= PAST:
+            return stop
+        found += [] if angle is None else [(angle, stop)]
+    return min(found, key=lambda f: f[0])[1] if found else None
+
+
+def _angles(trial: Trial, joint: str) -> tuple[float | None, float | None]:
+    return trial.angle(joint, is_folded=False), trial.angle(joint, is_folded=True)

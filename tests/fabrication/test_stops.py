@@ -1,0 +1,99 @@
+"""Hinges are stopped at both ends, tried by turning them on; and a hinge without its stop is found."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from foldfab.fabrication import solids
+from foldfab.fabrication.inspect import inspect
+from foldfab.fabrication.model import Assembly
+from foldfab.fabrication.panels import panels
+from foldfab.fabrication.solids import Solid
+from foldfab.fabrication.stops import rests, stops
+from foldfab.fabrication.trial import Trial
+from foldfab.fabrication.turning import PAST, meets, turn
+
+CASES = list(itertools.product(("shelter", "table"), ("open", "folded")))
+
+
+@pytest.mark.parametrize(("name", "posture"), CASES)
+def test_every_hinge_meets_material_past_its_range_and_none_within(
+    name: str, posture: str, assembled: Callable[..., Assembly]
+) -> None:
+    assembly = assembled(name, posture)
+    made = as_solids(assembly)
+    for joint in assembly.joints:
+        a, b = joint.parts
+        range_ = turn(joint, assembly.poses[a], assembly.poses[b])
+        for is_folded in (False, True):
+            assert meets(range_, made[a], made[b], PAST, is_folded=is_folded), (joint.name, is_folded)
+            assert not meets(range_, made[a], made[b], 0.0, is_folded=is_folded)
+        for k in range(len(assembly.times)):
+            relative = np.linalg.inv(assembly.poses[a][k]) @ assembly.poses[b][k]
+            assert solids.overlap(made[a], solids.moved(made[b], relative)) <= 0.01
+    assert all(angle is not None and angle <= PAST for joint in assembly.joints for angle in joint.stop_deg)
+    assert "stop" not in {finding.code for finding in assembly.findings}
+
+
+@pytest.mark.parametrize(("name", "posture"), CASES)
+def test_a_hinge_without_its_stop_is_found(name: str, posture: str, assembled: Callable[..., Assembly]) -> None:
+    assembly = assembled(name, posture)
+    plain = without_stops(assembly)
+    told = [f.text for f in inspect(assembly, plain, lambda _: None) if f.code == "stop"]
+    assert any("past where it stands open" in text for text in told)
+    if name == "shelter":
+        assert any("past straight" in text for text in told)
+
+
+def test_open_prints_get_levers_and_folded_ones_close_faces(assembled: Callable[..., Assembly]) -> None:
+    kinds = {
+        posture: {k for j in assembled("shelter", posture).joints for k in j.stops} for posture in ("open", "folded")
+    }
+    assert {"tongue", "lap"} <= kinds["open"]
+    assert {"heel", "butt"} <= kinds["folded"]
+
+
+def test_a_stop_without_room_is_not_made(assembled: Callable[..., Assembly]) -> None:
+    assembly = assembled("shelter")
+    chain = assembly.solution.chain("wall")
+    made = without_stops(assembly)
+    trial = Trial(assembly, made)
+    (first, *_) = stops(assembly.solution, chain, 1, in_open=True)
+    assert trial.better(first) is not None
+    low, high = solids.bounds(first.added)
+    blocked = {**made, "roof": solids.union([made["roof"], pillar(made["roof"], low, high)])}
+    assert Trial(assembly, blocked).better(first) is None
+
+
+def test_a_folded_panel_without_a_base_below_gets_a_rest(assembled: Callable[..., Assembly]) -> None:
+    assembly = assembled("shelter")
+    chain = assembly.solution.chain("wall")
+    (rest, *_) = rests(assembly.solution, chain, 0)
+    face = solids.bounds(without_stops(assembly)["wall/1"])[0][2] - assembly.solution.thickness.gap
+    assert rest.body == "ground"
+    assert solids.bounds(rest.added)[1][2] == pytest.approx(face, abs=0.02)
+    assert list(rests(assembly.solution, chain, 1)) == []
+
+
+def as_solids(assembly: Assembly) -> dict[str, Solid]:
+    """The bodies of an assembly, as the kernel knows them."""
+    return {body.name: solids.from_mesh(body.vertices, body.faces) for body in assembly.bodies}
+
+
+def without_stops(assembly: Assembly) -> dict[str, Solid]:
+    """The same with panels as they are before they get stops."""
+    made = as_solids(assembly)
+    for chain in assembly.solution.chains:
+        plain = panels(chain, assembly.solution.thickness)
+        made.update((name, solids.tidied(solid)) for name, solid in zip(chain.panels, plain, strict=True))
+    return made
+
+
+def pillar(roof: Solid, low: np.ndarray, high: np.ndarray) -> Solid:
+    """Something that hangs from the roof down beside where a stop would be."""
+    top = solids.bounds(roof)[0][2] + 1.0
+    return solids.box((low[0] - 1.0, low[1], low[2]), (low[0] - 0.1, high[1], top))

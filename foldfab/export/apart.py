@@ -26,8 +26,12 @@ STEP_MM = 0.5
 """Outlines are looked at this often along their way."""
 AROUND_MM = 0.5
 """How far around its knuckles a hinge is looked at: over the widest gap that is usual, and two layers."""
+HAIR_MM = 2e-3
+"""By how much a cut may be off: heights are rounded to 1 µm in G-code, and files to 32 bits."""
 ROOM_MM = 0.9
 """A piece with room for two lines must have an outline; Arachne leaves out a cone's tip up to 0.65 mm wide."""
+LEVEL_MM2 = 1.0
+"""A section that changes by more than this within a hair is a cut along a level face."""
 LAID_MM2 = 0.02
 """Two bodies of neighbouring layers may share this much by rounding."""
 
@@ -77,6 +81,15 @@ class Outlines:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class _Section:
+    """What a cut shows of a body."""
+
+    shape: CrossSection
+    is_level: bool
+    """Whether it runs along a level face, so that it is the slicer's choice what it shows."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class _Piece:
     """A connected piece of a body's section."""
 
@@ -94,7 +107,7 @@ def outlines(bodies: Sequence[Solid], hinges: Sequence[Hinge], layers: Iterable[
     boxes = [hinge.box() for hinge in hinges]
     seen, cut, counts = 0, set[str](), np.zeros(2, dtype=np.int64)
     clashes: list[Clash] = []
-    below: dict[str, CrossSection] = {}
+    below: dict[str, _Section] = {}
     for layer in layers:
         z = layer.middle
         active = [(hinge, low, high) for hinge, (low, high) in zip(hinges, boxes, strict=True) if low[2] < z < high[2]]
@@ -109,12 +122,18 @@ def outlines(bodies: Sequence[Solid], hinges: Sequence[Hinge], layers: Iterable[
     return Outlines(seen, len(cut), int(counts[0]), int(counts[1]), tuple(clashes))
 
 
-def _sections(bodies: Sequence[Solid], z: float) -> dict[str, CrossSection]:
-    return {body.name: body.manifold.slice(z) for body in bodies if body.low[2] < z < body.high[2]}
+def _sections(bodies: Sequence[Solid], z: float) -> dict[str, _Section]:
+    """What is there both a hair above and below."""
+    sections = {}
+    for body in bodies:
+        if body.low[2] < z < body.high[2]:
+            under, over = body.manifold.slice(z - HAIR_MM), body.manifold.slice(z + HAIR_MM)
+            sections[body.name] = _Section(under ^ over, abs(under.area() - over.area()) > LEVEL_MM2)
+    return sections
 
 
 def _layer(
-    layer: Layer, sections: dict[str, CrossSection], windows: list[tuple[Array, Array]]
+    layer: Layer, sections: dict[str, _Section], windows: list[tuple[Array, Array]]
 ) -> tuple[tuple[int, int], list[Clash]]:
     """How many pieces at hinges there are and have an outline, and what went wrong."""
     # The first layer is drawn in against the elephant's foot.
@@ -134,14 +153,14 @@ def _layer(
     return (len(wanted), len(wanted & own)), clashes
 
 
-def _pieces(name: str, section: CrossSection, inset: float) -> list[_Piece]:
+def _pieces(name: str, section: _Section, inset: float) -> list[_Piece]:
     pieces = []
-    for part in section.decompose():
+    for part in section.shape.decompose():
         if part.is_empty():
             continue
         rings = [np.asarray(ring, dtype=np.float64) for ring in part.to_polygons()]
         edges = np.concatenate([np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in rings])
-        is_wide = not part.offset(-inset).is_empty()
+        is_wide = not section.is_level and not part.offset(-inset).is_empty()
         pieces.append(_Piece(name, edges, edges.min(axis=(0, 1)), edges.max(axis=(0, 1)), is_wide))
     return pieces
 
@@ -176,12 +195,12 @@ def _is_inside(points: Array, edges: Array) -> Bools:
 
 
 def _laid(
-    below: dict[str, CrossSection], sections: dict[str, CrossSection], pairs: list[tuple[str, str]], z: float
+    below: dict[str, _Section], sections: dict[str, _Section], pairs: list[tuple[str, str]], z: float
 ) -> list[Clash]:
     """Pairs of which one is printed straight onto the other: no layer of air between them."""
     found = []
     for a, b in pairs:
         for under, over in ((a, b), (b, a)):
-            if under in below and over in sections and (below[under] ^ sections[over]).area() > LAID_MM2:
+            if under in below and over in sections and (below[under].shape ^ sections[over].shape).area() > LAID_MM2:
                 found.append(Clash("laid", (under, over), z))
     return found

@@ -69,10 +69,16 @@ def test_a_body_laid_onto_another_is_noticed() -> None:
     axis = np.array([[50.0, 54.0, 4.0], [56.0, 54.0, 4.0]])
     ring_of = ring((50.1, 50.1), (56.1, 58.1))
     stack = [Layer(top, 0.2, (ring_of,)) for top in np.arange(3.0, 5.1, 0.2).round(3)]
-    for gap, kinds in ((0.1, ["laid"]), (0.3, [])):
+    for gap, kinds in ((0.05, ["laid"]), (0.3, [])):
         upper = box("right", (50.1, 50.1, 4.0 + gap))
         found = outlines((lower, upper), [Hinge("hinge", ("left", "right"), axis, 0.9)], stack)
         assert [clash.kind for clash in found.clashes] == kinds
+
+
+@pytest.mark.parametrize("top", [4.0999, 4.1, 4.1001])
+def test_a_cut_along_a_level_face_asks_for_no_outline(top: float) -> None:
+    """Boxes end at z = 4, the middle of the layer."""
+    assert outlines(pair(0.3), [hinge()], [Layer(top, 0.2, ())]).clashes == ()
 
 
 def test_a_hinge_beyond_the_layers_is_not_counted() -> None:

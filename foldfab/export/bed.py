@@ -9,6 +9,7 @@ import numpy as np
 from foldfab.export.frames import moved, to_sheet
 from foldfab.export.shell import GRID_DIGITS, Shell, bounds, snapped
 from foldfab.fabrication.model import Assembly
+from foldfab.fabrication.posture import printed_turn
 from foldfab.geometry.arrays import Array
 
 FIT_MM = 1e-6
@@ -32,7 +33,8 @@ def _postured(assembly: Assembly) -> list[Array]:
     if assembly.posture == "open":
         return [to_sheet(assembly, body.vertices) for body in assembly.bodies]
     # Folded flat, the canonical frame's floor is the bed: d = -Z.
-    return [moved(body.vertices, assembly.poses[body.name][-1]) for body in assembly.bodies]
+    turn = printed_turn(assembly)
+    return [moved(body.vertices, assembly.poses[body.name][-1]) @ turn.T for body in assembly.bodies]
 
 
 def _fits(points: list[Array], volume: Array) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,6 +14,8 @@ from foldfab.fabrication.inspect import inspect
 from foldfab.fabrication.model import Assembly, Body, Finding, Joint
 from foldfab.fabrication.panels import panels
 from foldfab.fabrication.plates import axis_of, plate
+from foldfab.fabrication.posture import edge_up
+from foldfab.fabrication.relief import relieved
 from foldfab.fabrication.solids import Solid
 from foldfab.folding.kinematics import configuration, key_times
 from foldfab.folding.mechanism import frames, joints, tilts
@@ -38,17 +41,21 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
     made, findings = _solids(solution)
     times = key_times(solution)
     poses = configuration(solution, times)
+    up = edge_up(solution, made, poses) if posture == "edge" else None
+    if up is not None:
+        made = relieved(solution, made, up)
+    made = {name: solids.tidied(body) for name, body in made.items()}
     found = tuple(_joints(solution))
     bodies = tuple(_body(solution, name, made[name]) for name in sorted(made))
     findings += [Finding("note", note) for note in solution.notes]
-    draft = Assembly(solution, bodies, found, times, {n: poses[n] for n in made}, posture, ())
+    draft = Assembly(solution, bodies, found, times, {n: poses[n] for n in made}, posture, (), up)
     findings += inspect(draft, made, lambda share: tell("inspection", share))
     fatal = [f for f in findings if f.is_fatal]
     if fatal:
         told = "".join(f"\n  {f.code}: {f.text}" for f in fatal[:12])
         more = f"\n  and {len(fatal) - 12} more" if len(fatal) > 12 else ""
         raise FabricationError(f"this print would not work:{told}{more}")
-    return Assembly(solution, bodies, found, times, {n: poses[n] for n in made}, posture, tuple(findings))
+    return replace(draft, findings=tuple(findings))
 
 
 def _solids(solution: FoldSolution) -> tuple[dict[str, Solid], list[Finding]]:
@@ -63,7 +70,7 @@ def _solids(solution: FoldSolution) -> tuple[dict[str, Solid], list[Finding]]:
             )
     for chain in solution.chains:
         made.update(zip(chain.panels, panels(chain, solution.thickness), strict=True))
-    return {name: solids.tidied(body) for name, body in made.items()}, findings
+    return made, findings
 
 
 def _body(solution: FoldSolution, name: str, solid: Solid) -> Body:

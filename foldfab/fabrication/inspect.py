@@ -14,6 +14,7 @@ import numpy as np
 
 from foldfab.fabrication import solids
 from foldfab.fabrication.model import Assembly, Finding
+from foldfab.fabrication.posture import printed_pose, printed_turn
 from foldfab.fabrication.solids import Solid
 from foldfab.folding.kinematics import configuration
 from foldfab.geometry.arrays import Array
@@ -46,12 +47,6 @@ def inspect(assembly: Assembly, made: dict[str, Solid], tell: Callable[[float], 
     return findings
 
 
-def printed_pose(assembly: Assembly, name: str) -> Array:
-    """(4, 4) where a body stands in the posture it is printed in, canonical frame."""
-    pose: Array = assembly.poses[name][0 if assembly.posture == "open" else -1]
-    return pose
-
-
 def extent(assembly: Assembly, *, folded: bool) -> Array:
     """(3,) size of the axis-aligned bounds of all bodies in the recipe's axes, mm."""
     turn = assembly.solution.scaffold.rotation.T
@@ -60,9 +55,7 @@ def extent(assembly: Assembly, *, folded: bool) -> Array:
 
 def printed_extent(assembly: Assembly) -> Array:
     """(3,) size on the bed in the posture it is printed in, mm."""
-    if assembly.posture == "open":
-        return extent(assembly, folded=False)
-    return _spread(assembly, -1, np.eye(3))
+    return _spread(assembly, 0 if assembly.posture == "open" else -1, printed_turn(assembly))
 
 
 def _spread(assembly: Assembly, key: int, turn: Array) -> Array:

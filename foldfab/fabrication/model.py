@@ -82,8 +82,12 @@ class Assembly:
     posture: Posture
     """How the print file is laid out."""
     findings: tuple[Finding, ...]
+    up: Array | None = None
+    """(3,) the hinge direction that points up where it stands on edge, canonical frame; None in other postures."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "times", frozen(self.times, -1))
+        if self.up is not None:
+            object.__setattr__(self, "up", frozen(self.up, 3))
         poses = {name: frozen(pose, -1, 4, 4) for name, pose in self.poses.items()}
         object.__setattr__(self, "poses", poses)

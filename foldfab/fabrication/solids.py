@@ -46,12 +46,18 @@ def rod(radius: float, start: float, end: float, x: float, z: float, *, is_hole:
 
 
 def cone(radius: float, base: float, tip: float, x: float, z: float, *, is_hole: bool = False) -> Solid:
-    """A 45° cone along y around (x, z) with its mouth at `base`, pointing to `tip`."""
+    """A cone along y around (x, z) with its mouth at `base`, pointing to `tip`: of 45° where it is as high as wide."""
     size = radius / np.cos(np.pi / SIDES) if is_hole else radius
     shape = Manifold.cylinder(abs(tip - base), size, 0.0, SIDES)
     sign = 1.0 if tip > base else -1.0
     turn = np.array([[1.0, 0.0, 0.0, x], [0.0, 0.0, sign, base], [0.0, -sign, 0.0, z]])
     return shape.transform(turn)
+
+
+def prism(outline: Array, start: float, end: float) -> Solid:
+    """A prism along x from `start` to `end` over a convex outline (k, 2) of y and z, whichever way round."""
+    corners = [[x, float(y), float(z)] for x in (start, end) for y, z in outline]
+    return checked(Manifold.hull_points(corners))
 
 
 def union(parts: list[Solid]) -> Solid:

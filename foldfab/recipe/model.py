@@ -7,7 +7,7 @@ from typing import Literal
 
 from foldfab.geometry.arrays import Array, frozen
 
-Posture = Literal["open", "folded"]
+Posture = Literal["open", "folded", "edge", "plate"]
 Ordering = Literal["greedy", "optimal"]
 Collisions = Literal["swept", "regions"]
 Mechanism = Literal["in-place", "slanted", "deleted"]

@@ -26,6 +26,7 @@ _OPTIONS: tuple[tuple[str, str, str], ...] = (
     ("--posture", "P", "print it open or folded"),
     ("--printer", "NAME", "a known printer such as prusa-mk4, or a build volume such as 200x200x180"),
     ("--scale", "S", 'print size over true size: "fit", a number, or a ratio such as 1:5'),
+    ("--hinge", "STYLE", "cone or clip, printed in place; filament, screw-m2 or screw-m3, pinned after printing"),
     ("--clearance", "MM", "gap that a hinge is printed with, 0.15 to 1"),
     ("--thickness", "MM", "thickness of plates and panels, 2 to 20"),
     ("--alpha", "A", "weight of inserted hinges (1) against shrinking (0)"),
@@ -35,7 +36,7 @@ _OPTIONS: tuple[tuple[str, str, str], ...] = (
     ("--collisions", "C", "swept: shapes that meet in time; or regions: the paper's own test"),
     ("--time-limit", "SECONDS", "of work on an ordinary machine, up to 3600"),
 )
-_SWITCHES = ("slanting", "stay_in_box", "symmetry")
+_SWITCHES = ("slanting", "stay_in_box", "symmetry", "latch")
 _REPEATED = (("--rigid", "NAME", "a part that must not get a hinge in its middle; may be given again for others"),)
 
 
@@ -267,6 +268,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
         group.add_argument(option, metavar=metavar, action="append", help=text)
     group.add_argument("--no-slanting", dest="slanting", action="store_false", default=None, help="fold in place only")
     group.add_argument("--stay-in-box", action="store_true", default=None, help="stay within the bounding box")
+    group.add_argument("--latch", action="store_true", default=None, help="detents that hold base hinges open")
     group.add_argument("--symmetry", action="store_true", default=None, help="treat mirrored parts alike")
 
 

@@ -21,6 +21,7 @@ from foldfab.folding.kinematics import configuration, key_times
 from foldfab.folding.mechanism import frames, joints, tilts
 from foldfab.folding.model import Chain, FoldSolution
 from foldfab.geometry.arrays import Array, Indices
+from foldfab.recipe.hinges import hinge_problem
 from foldfab.recipe.model import Posture
 
 Progress = Callable[[str, float], None]
@@ -37,6 +38,10 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
         FabricationError: a finding means that the print would not work; it says which part and what to change.
     """
     tell = progress or (lambda what, share: None)
+    options = solution.scaffold.recipe.print
+    problem = hinge_problem(options.hinge, options.thickness, posture)
+    if problem:
+        raise FabricationError(problem)
     tell("solids", 0.0)
     made, findings = _solids(solution)
     times = key_times(solution)

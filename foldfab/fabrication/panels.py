@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from foldfab.fabrication.hinges import carrier, follower, knuckles, room, webs
+from foldfab.fabrication.hinges import knuckles, room, webs
 from foldfab.fabrication.solids import Solid, box, cut, placed, rod, union
+from foldfab.fabrication.styles import style
 from foldfab.folding.mechanism import frames
 from foldfab.folding.model import Chain, Thickness
 
@@ -28,20 +29,23 @@ def _panel(chain: Chain, thickness: Thickness, i: int) -> Solid:
     holes: list[Solid] = []
     extra: list[Solid] = []
     sockets: list[Solid] = []
+    pinned = style(thickness.hinge)
     ends = [(0, 0.0)] if i == 0 else []
     ends += [(last + 1, length)] if i == last and chain.far is not None else []
     for hinge, z in ends:
         solid.append(rod(half, low, high, 0.0, z))
         marks = knuckles(chain.hinge_spans[hinge], thickness)
         holes += room(marks.carrier, thickness.foot_room, thickness, 0.0, z)
-        extra += follower(marks, thickness, 0.0, z)
+        more, bores = pinned.follower(marks, thickness, 0.0, z)
+        extra, sockets = extra + more, sockets + bores
     if i > 0:
         marks, x = knuckles(chain.hinge_spans[i], thickness), float(chain.offsets[i])
         holes += room(marks.carrier, thickness.knuckle_room, thickness, x, 0.0)
-        extra += follower(marks, thickness, x, 0.0) + webs(marks.follower, thickness, x, 0.0, 1.0)
+        more, bores = pinned.follower(marks, thickness, x, 0.0)
+        extra, sockets = extra + more + webs(marks.follower, thickness, x, 0.0, 1.0), sockets + bores
     if i < last:
         marks, x = knuckles(chain.hinge_spans[i + 1], thickness), float(chain.offsets[i + 1])
         holes += room(marks.follower, thickness.knuckle_room, thickness, x, length)
-        more, sockets = carrier(marks, thickness, x, length)
-        extra += more + webs(marks.carrier, thickness, x, length, -1.0)
+        more, bores = pinned.carrier(marks, thickness, x, length)
+        extra, sockets = extra + more + webs(marks.carrier, thickness, x, length, -1.0), sockets + bores
     return cut(union([cut(union(solid), holes), *extra]), sockets)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from foldfab.fabrication.hinges import carrier, feet, knuckles
+from foldfab.fabrication.hinges import feet, knuckles
 from foldfab.fabrication.solids import Solid, box, cut, hull, pieces, placed, union
+from foldfab.fabrication.styles import style
 from foldfab.folding.anatomy import base_boxes, faces
 from foldfab.folding.mechanism import joints, tilts
 from foldfab.folding.model import Chain, Thickness
@@ -72,10 +73,11 @@ def _mount(chain: Chain, base: BasePatch, thickness: Thickness, end: int) -> tup
     frame = np.stack([chain.across, chain.along if end == 0 else -chain.along, rise])
     face, thickness = faces(base, thickness), thickness.of(chain.panel)
     span, hinge = (chain.span, chain.hinge_spans[0]) if end == 0 else (-chain.span[::-1], -chain.hinge_spans[-1][::-1])
-    marks = knuckles(hinge, thickness)
+    marks = knuckles(chain.hinge_spans[0 if end == 0 else -1], thickness)
+    marks = marks if end == 0 else marks.mirrored
     pad, half = chain.pads[end], thickness.panel / 2
     depth = thickness.axis_height + pad + ROOT_SHARE * thickness.panel
-    solid, holes = carrier(marks, thickness, 0.0, 0.0)
+    solid, holes = style(thickness.hinge).carrier(marks, thickness, 0.0, 0.0)
     solid += feet(marks, thickness, depth)
     if pad > 0:
         solid.append(box((-half, span[0], -depth), (half, span[1], -thickness.axis_height)))

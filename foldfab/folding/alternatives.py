@@ -31,7 +31,7 @@ def alternatives(scaffold: Scaffold, count: int) -> tuple[FoldSolution, ...]:
         FoldingError: there is not even one.
     """
     found = [solve(scaffold)]
-    thickness = Thickness(scaffold.recipe.print.thickness, scaffold.recipe.print.clearance)
+    thickness = Thickness.of_print(scaffold.recipe.print)
     problem = posed(found[0].scaffold, thickness)
     excluded = [_signatures(problem, found[0])]
     while len(found) < count:

@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from foldfab.geometry.arrays import Array, frozen
+from foldfab.recipe.hinges import STYLES, HingeKind
+from foldfab.recipe.model import PrintOptions
 from foldfab.scaffold.model import Scaffold
 
 Mechanism = Literal["in-place", "slanted", "deleted"]
@@ -17,8 +19,6 @@ Side = Literal["l", "r"]
 
 KNUCKLE_WALL = 0.8
 """Least wall behind a socket, two lines of a 0.4 mm nozzle, mm."""
-PIN_KNUCKLE = 1.6
-"""Least width of the knuckle that carries the pins, mm."""
 PANEL_WEB = 1.2
 """Least length of whole panel between two hinges, mm."""
 
@@ -31,10 +31,17 @@ class Thickness:
     """K, mm."""
     gap: float
     """g, the printed clearance, mm."""
+    hinge: HingeKind = "cone"
+    """How the knuckles of a hinge are pinned together."""
+
+    @classmethod
+    def of_print(cls, options: PrintOptions) -> Thickness:
+        """What the options of a print ask for."""
+        return cls(options.thickness, options.clearance, options.hinge)
 
     def of(self, panel: float) -> Thickness:
-        """The same clearance around panels of another thickness, mm."""
-        return Thickness(panel, self.gap)
+        """The same clearance and hinges around panels of another thickness, mm."""
+        return Thickness(panel, self.gap, self.hinge)
 
     @property
     def axis_height(self) -> float:
@@ -58,13 +65,16 @@ class Thickness:
 
     @property
     def socket_width(self) -> float:
-        """Least width of a knuckle with a socket in one side, mm."""
-        return self.socket_radius + KNUCKLE_WALL
+        """Least width of a knuckle of the carrier, mm: with a socket in one side, or as its style needs it."""
+        return self.socket_radius + KNUCKLE_WALL if self.hinge == "cone" else STYLES[self.hinge].knuckle
 
     @property
     def hinge_width(self) -> float:
-        """Least width of a hinge that cannot be pulled apart: socket, pin and socket knuckle, mm."""
-        return 2 * (self.socket_width + self.gap) + PIN_KNUCKLE
+        """Least width of a hinge that cannot be pulled apart: the carrier's, the follower's and the carrier's
+        knuckle, mm, with what its style needs before and behind them.
+        """
+        style = STYLES[self.hinge]
+        return 2 * (self.socket_width + self.gap) + style.pin_knuckle + style.head + style.tip
 
     @property
     def foot_room(self) -> float:

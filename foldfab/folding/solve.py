@@ -43,7 +43,7 @@ def solve(scaffold: Scaffold) -> FoldSolution:
     Raises:
         FoldingError: no order of the units folds the furniture; the message names what stands in the way.
     """
-    thickness = Thickness(scaffold.recipe.print.thickness, scaffold.recipe.print.clearance)
+    thickness = Thickness.of_print(scaffold.recipe.print)
     if not scaffold.patches:
         raise FoldingError("nothing folds along this direction: every part lies perpendicular to it already")
     rigid = rigid_patches(scaffold)

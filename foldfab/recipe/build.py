@@ -98,6 +98,8 @@ def _print(form: PrintForm) -> PrintOptions:
         thickness=float(form.thickness),
         clearance=float(form.clearance),
         posture=form.posture,
+        hinge=form.hinge,
+        latch=form.latch,
         scale=None if form.scale == "fit" else float(form.scale),
     )
 

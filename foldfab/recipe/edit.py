@@ -39,6 +39,8 @@ def override(
     clearance: str | float | None = None,
     thickness: str | float | None = None,
     posture: str | None = None,
+    hinge: str | None = None,
+    latch: bool | None = None,
     alpha: str | float | None = None,
     max_hinges: str | int | None = None,
     shrink_steps: str | int | None = None,
@@ -61,15 +63,24 @@ def override(
     numbers = {"alpha": alpha, "max_hinges": max_hinges, "shrink_steps": shrink_steps, "time_limit": time_limit}
     switches = {"slanting": slanting, "stay_in_box": stay_in_box, "symmetry": symmetry}
     fold = _given({**numbers, **switches, "ordering": ordering, "collisions": collisions})
-    options = _given({"clearance": clearance, "thickness": thickness, "posture": posture, "scale": _ratio(scale)})
+    sizes = {"clearance": clearance, "thickness": thickness, "scale": _ratio(scale)}
+    options = _given({**sizes, "posture": posture, "hinge": hinge, "latch": latch})
     way = {} if direction is None else {"direction": _vector(direction)}
     wrong = _check(FoldForm, fold)
-    problems = _check(_DirectionForm, way) + wrong + _check(PrintForm, options) + _check_printer(printer)
+    problems = _check(_DirectionForm, way) + wrong + _check(PrintForm, _with_own(recipe, options)) + _check_printer(printer)
     problems += _check_rigid(recipe, rigid) + _check_patterns(recipe, {} if wrong else fold, rigid)
     if problems:
         raise RecipeError(SOURCE, tuple(problems))
     parts = tuple(replace(part, hingeable=False) if part.name in rigid else part for part in recipe.parts)
     return _replaced(replace(recipe, parts=parts), way, fold, options, printer)
+
+
+def _with_own(recipe: Recipe, options: dict[str, Any]) -> dict[str, Any]:
+    """The options with the recipe's own that others are judged by."""
+    if not options.keys() & {"thickness", "posture", "hinge"}:
+        return options
+    own = recipe.print
+    return {"thickness": own.thickness, "posture": own.posture, "hinge": own.hinge, **options}
 
 
 def _replaced(

@@ -23,6 +23,7 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
+from foldfab.recipe.hinges import HingeKind, hinge_problem
 from foldfab.recipe.model import Collisions, FoldOptions, Mechanism, Ordering, Pattern, Posture, PrintOptions
 from foldfab.recipe.model import Side as FoldSide
 from foldfab.recipe.names import folder_name_problem, has_control_characters, part_name_problem
@@ -112,6 +113,11 @@ def _on_cuts(window: list[float], info: ValidationInfo) -> list[float]:
 def _allowed_hinges(hinges: int, info: ValidationInfo) -> int:
     _complain(hinges_problem(hinges, (info.context or {}).get("max_hinges")))
     return hinges
+
+
+def _makeable(hinge: HingeKind, info: ValidationInfo) -> HingeKind:
+    _complain(hinge_problem(hinge, info.data.get("thickness"), info.data.get("posture")))
+    return hinge
 
 
 def _known_printer(text: str) -> str:
@@ -268,6 +274,10 @@ class PrintForm(Form):
         default=_PRINT.clearance, ge=0.15, le=1, description="Gap that a hinge is printed with, mm."
     )
     posture: Posture = Field(default=_PRINT.posture, description="Whether it is printed open or folded.")
+    hinge: Annotated[HingeKind, AfterValidator(_makeable)] = Field(
+        default=_PRINT.hinge, description="How hinges are pinned together."
+    )
+    latch: bool = Field(default=_PRINT.latch, description="Whether a detent holds the furniture open.")
     scale: Scale = Field(default="fit", description="Print size over true size; fit is the largest on the printer.")
 
 

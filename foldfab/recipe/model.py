@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from foldfab.geometry.arrays import Array, frozen
+from foldfab.recipe.hinges import HingeKind
 
 Posture = Literal["open", "folded", "edge", "plate"]
 Ordering = Literal["greedy", "optimal"]
@@ -115,6 +116,10 @@ class PrintOptions:
     clearance: float = 0.3
     """g, the gap that a hinge is printed with, mm in print."""
     posture: Posture = "open"
+    hinge: HingeKind = "cone"
+    """How the knuckles of a hinge are pinned together."""
+    latch: bool = False
+    """Whether base hinges get a detent that holds them open."""
     scale: float | None = None
     """Print size over true size; None is the largest that fits the printer."""
 

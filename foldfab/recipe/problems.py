@@ -77,6 +77,8 @@ EXPECTED = MappingProxyType(
         "thickness": "a number of millimetres from 2 to 20",
         "clearance": "a number of millimetres from 0.15 to 1",
         "posture": '"open" or "folded"',
+        "hinge": '"cone", "filament", "screw-m2", "screw-m3" or "clip"',
+        "latch": "true or false",
         "scale": '"fit" or a number from 0.00001 to 1000, such as 0.2',
     }
 )
@@ -102,6 +104,8 @@ _NOT_YET = MappingProxyType(
         ("parts[]", "mesh"): 'meshes are not read yet; give the part a "box" with "center" and "size"',
     }
 )
+SLIP = 0.9
+"""Keys this alike are the same but for a slip, even where the key belongs elsewhere as well."""
 _STANDS_FOR = MappingProxyType({"parts": "model", "box": "mesh"})
 
 
@@ -182,9 +186,9 @@ def _unknown_key(key: str, parent: str) -> str:
         return _NOT_YET[parent, key]
     known = keys(FORMS[parent])
     home = next((other for other, form in FORMS.items() if key in keys(form)), None)
-    if home is not None:
+    close = get_close_matches(key.lower(), known, n=1, cutoff=SLIP if home is not None else 0.6)
+    if home is not None and not close:
         return f"is not known here; it belongs in {home or 'the top level'}"
-    close = get_close_matches(key.lower(), known, n=1)
     if close:
         return f'is not known here; did you mean "{close[0]}"?'
     return f"is not known here; known are {', '.join(known)}"

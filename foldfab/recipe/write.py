@@ -74,6 +74,8 @@ def _print(options: PrintOptions) -> dict[str, Any]:
         "thickness": options.thickness,
         "clearance": options.clearance,
         "posture": options.posture,
+        "hinge": options.hinge,
+        "latch": options.latch,
         "scale": "fit" if options.scale is None else options.scale,
     }
 

@@ -18,6 +18,7 @@ from foldfab.fabrication.solids import Solid
 from foldfab.folding.mechanism import frames
 from foldfab.folding.model import Chain, Thickness
 from foldfab.geometry.arrays import Array
+from foldfab.recipe.hinges import STYLES, HingeKind
 from foldfab.scaffold.model import BasePatch
 
 THICKNESSES = [Thickness(k, g) for k in (2.5, 3.0, 4.0, 6.0) for g in (0.2, 0.3, 0.4)]
@@ -107,6 +108,58 @@ def test_an_inserted_hinge(
     assert_captive(lower, upper, thickness)
 
 
+@pytest.mark.parametrize("kind", ["filament", "screw-m2", "screw-m3", "clip"])
+@pytest.mark.parametrize("width", ["least", "wide"])
+@pytest.mark.parametrize("gap", [0.2, 0.3, 0.4])
+def test_other_styles(
+    kind: HingeKind,
+    width: str,
+    gap: float,
+    make_chain: Callable[..., Chain],
+    make_base: Callable[..., BasePatch],
+    assert_printable: Callable[[Solid], None],
+) -> None:
+    thickness = Thickness(STYLES[kind].least_thickness, gap, kind)
+    wide = thickness.hinge_width if width == "least" else 60.0
+    chain = make_chain(thickness, lengths=(25.0, 25.0), width=wide)
+    ground, _ = plate(make_base((0, 0, 40, 40)), (chain,), thickness)
+    lower, upper = panels(chain, thickness)
+    for body in (ground, lower, upper):
+        assert_printable(solids.tidied(body))
+    moving = poses(chain)
+    assert_works(ground, lower, moving[0], thickness, in_sheets=False)
+    assert_works(lower, upper, np.linalg.inv(moving[0]) @ moving[1], thickness, in_sheets=True)
+    if kind == "clip":
+        assert_captive(ground, lower, thickness)
+        assert_captive(lower, upper, thickness)
+    for hinge, (fixed, moving_half) in enumerate(((ground, lower), (lower, upper)) if kind != "clip" else ()):
+        pin = loose_pin(chain, thickness, hinge)
+        assert solids.overlap(pin, solids.union([fixed, moving_half])) <= ROUNDING
+        assert_captive(solids.union([fixed, pin]), moving_half, thickness)
+        with pytest.raises(AssertionError, match="comes apart"):
+            assert_captive(fixed, moving_half, thickness)
+
+
+def test_wide_screw_hinges_get_a_screw_from_either_end() -> None:
+    marks = knuckles(np.array([0.0, 60.0]), Thickness(4.0, 0.3, "screw-m2"))
+    assert len(marks.pins) == 2
+    (first, last), (other_first, other_last) = marks.pins
+    assert first < last < other_last < other_first
+    assert marks.mirrored.mirrored == marks
+    assert [round(a + b, 9) for a, b in zip(marks.carrier[0], reversed(marks.carrier[-1]), strict=True)] == [60, 60]
+
+
+@pytest.mark.parametrize("kind", list(STYLES))
+def test_the_least_width_keeps_every_style_at_its_minima(kind: HingeKind) -> None:
+    style = STYLES[kind]
+    thickness = Thickness(style.least_thickness, 0.3, kind)
+    marks = knuckles(np.array([0.0, thickness.hinge_width]), thickness)
+    assert (len(marks.carrier), len(marks.follower)) == (2, 1)
+    assert marks.carrier[0][0] == pytest.approx(style.head)
+    assert min(b - a for a, b in marks.carrier) >= style.knuckle - 1e-9
+    assert min(b - a for a, b in marks.follower) >= style.pin_knuckle - 1e-9
+    assert marks.carrier[-1][1] == pytest.approx(thickness.hinge_width)
+
 def test_hinges_that_are_not_held_are_noticed(make_chain: Callable[..., Chain]) -> None:
     thickness = Thickness(4.0, 0.3)
     lower, upper = panels(make_chain(thickness, lengths=(20.0, 20.0)), thickness)
@@ -149,3 +202,12 @@ def assert_captive(a: Solid, b: Solid, thickness: Thickness) -> None:
     for way in ways:
         pulled = (b.translate([share * far * step for step in way]) for share in (1.0, 0.75, 0.5))
         assert any(solids.overlap(a, moved) > ROUNDING for moved in pulled), f"comes apart along {np.round(way, 2)}"
+
+
+def loose_pin(chain: Chain, thickness: Thickness, hinge: int) -> Solid:
+    """What is put into a hinge after printing, as far as it reaches: filament, or the shanks of screws."""
+    radius = {"filament": 0.875, "screw-m2": 0.8, "screw-m3": 1.2}[thickness.hinge]
+    place = chain.root + [chain.offsets[hinge], 0.0, chain.lengths[:hinge].sum()]
+    short = 1.0
+    ends = [sorted(pin) for pin in knuckles(chain.hinge_spans[hinge], thickness).pins]
+    return solids.union([solids.rod(radius, a + short, b - short, place[0], place[2]) for a, b in ends])

@@ -48,10 +48,17 @@ class _Shelf:
     """y of each lower face, and whether a cone points down from it."""
     cone: float
     """Height of such a cone, mm."""
+    surface: float = 0.0
+    """x of the face of its own panel beside which an inserted hinge stands, mm; 0 for a hinge in mid-plane."""
 
 
 def relieved(solution: FoldSolution, made: dict[str, Solid], up: Array) -> dict[str, Solid]:
-    """The bodies in the open posture, with ramps under all knuckles; `up` (3,) is a hinge direction."""
+    """The bodies in the open posture, with ramps under all knuckles; `up` (3,) is a hinge direction.
+
+    Hinges of other kinds than the cone stay as they are.
+    """
+    if solution.thickness.hinge != "cone":
+        return made
     cutters: dict[str, list[Solid]] = {name: [] for name in made}
     for chain in solution.chains:
         thickness = solution.thickness.of(chain.panel)
@@ -78,13 +85,15 @@ def _shelves(chain: Chain, thickness: Thickness, up: Array) -> list[tuple[str, _
             side = 1.0 if x > 0 else -1.0
             ends = sorted((x - side * (thickness.knuckle_room + KEPT), x + side * (half + CLEAR)))
             width, room, near = (ends[0], ends[1]), thickness.knuckle_room, float(chain.lengths[j - 1])
-            carried = _Shelf(width, (x, near), near - room, 1.0, room + half, _lower(marks.carrier, way), 0.0)
+            surface = side * half
+            lower = _lower(marks.carrier, way)
+            carried = _Shelf(width, (x, near), near - room, 1.0, room + half, lower, 0.0, surface)
             found.append((chain.panels[j - 1], carried, origins[0, j - 1], axes[0, j - 1]))
         else:
-            width, room = across, thickness.foot_room
+            width, room, surface = across, thickness.foot_room, 0.0
             found.append(_foot(chain, thickness, j, up))
         faces = _ceilings(marks, chain.span, thickness, way)
-        shelf = _Shelf(width, (x, z), z - away * room, away, room + half, faces, thickness.pin_radius)
+        shelf = _Shelf(width, (x, z), z - away * room, away, room + half, faces, thickness.pin_radius, surface)
         found.append((chain.panels[i], shelf, origins[0, i], axes[0, i]))
     return found
 
@@ -93,7 +102,8 @@ def _foot(chain: Chain, thickness: Thickness, j: int, up: Array) -> tuple[str, _
     """The knuckles on their feet, rooted in the plate or on the plinth."""
     end = 0 if j == 0 else 1
     flip = 1.0 if end == 0 else -1.0
-    marks = knuckles(chain.hinge_spans[j] if end == 0 else -chain.hinge_spans[j][::-1], thickness)
+    marks = knuckles(chain.hinge_spans[j], thickness)
+    marks = marks if end == 0 else marks.mirrored
     axes = np.stack([chain.across, flip * chain.along, flip * chain.rise])
     way = 1.0 if float(axes[1] @ up) > 0 else -1.0
     half, name = thickness.panel / 2, chain.anchor if end == 0 else chain.far or ""
@@ -118,14 +128,28 @@ def _ceilings(marks: Knuckles, span: Array, thickness: Thickness, way: float) ->
 def _cutter(shelf: _Shelf, face: tuple[float, bool], way: float) -> Solid:
     """What lies below the ramp over one lower face, without the cone that points down from it."""
     y, has_cone = face
-    far = shelf.far + CLEAR
-    end = shelf.root + shelf.away * far
-    below = y - way * CLEAR
-    start = shelf.root + shelf.away * KEPT
-    outline = np.array([[below, start], [below, end], [y + way * STEEP * far, end], [y, start]])
-    ramp = solids.prism(outline, *shelf.x)
+    if shelf.surface:
+        low, high = shelf.x
+        out = high if shelf.surface > 0 else low
+        within = low if shelf.surface > 0 else high
+        # Beside its panel a knuckle is rooted in the panel's face as well, and would else begin as a sliver.
+        ramps = [_ramp(shelf, y, way, (within, shelf.surface), 0.0), _ramp(shelf, y, way, (shelf.surface, out), 1.0)]
+    else:
+        ramps = [_ramp(shelf, y, way, shelf.x, 0.0)]
     if not has_cone:
-        return ramp
-    radius = shelf.cone + KEPT
+        return solids.union(ramps)
+    radius, far = shelf.cone + KEPT, shelf.far + CLEAR
     tip = y - way * STEEP * radius
-    return solids.cut(ramp, [solids.cone(2 * far, tip + way * STEEP * 2 * far, tip, *shelf.axis)])
+    kept = solids.cone(2 * far, tip + way * STEEP * 2 * far, tip, *shelf.axis)
+    return solids.cut(solids.union(ramps), [kept])
+
+
+def _ramp(shelf: _Shelf, y: float, way: float, x: tuple[float, float], sideways: float) -> Solid:
+    """What lies below a plane that rises from the root on, and `sideways` as much from the first x on."""
+    corners = []
+    for across in x:
+        for out in (KEPT, shelf.far + CLEAR):
+            rise = STEEP * (out - KEPT + sideways * abs(across - x[0]))
+            z = shelf.root + shelf.away * out
+            corners += [[across, y - way * CLEAR, z], [across, y + way * rise, z]]
+    return solids.hull_of(np.array(corners))

@@ -54,10 +54,9 @@ def cone(radius: float, base: float, tip: float, x: float, z: float, *, is_hole:
     return shape.transform(turn)
 
 
-def prism(outline: Array, start: float, end: float) -> Solid:
-    """A prism along x from `start` to `end` over a convex outline (k, 2) of y and z, whichever way round."""
-    corners = [[x, float(y), float(z)] for x in (start, end) for y, z in outline]
-    return checked(Manifold.hull_points(corners))
+def hull_of(points: Array) -> Solid:
+    """The convex hull of points (n, 3)."""
+    return checked(Manifold.hull_points(np.asarray(points, dtype=np.float64).tolist()))
 
 
 def union(parts: list[Solid]) -> Solid:

@@ -23,7 +23,7 @@ USAGE, BUG, INTERRUPTED, UNHEARD = 2, 70, 130, 141
 
 _OPTIONS: tuple[tuple[str, str, str], ...] = (
     ("--direction", "D", 'folding direction: an axis such as -z, a vector such as 0,0,-1, or "auto"'),
-    ("--posture", "P", "print it open or folded"),
+    ("--posture", "P", "print it open, folded, edge (folded, hinge axes vertical), plate (loose parts), or auto"),
     ("--printer", "NAME", "a known printer such as prusa-mk4, or a build volume such as 200x200x180"),
     ("--scale", "S", 'print size over true size: "fit", a number, or a ratio such as 1:5'),
     ("--hinge", "STYLE", "cone or clip, printed in place; filament, screw-m2 or screw-m3, pinned after printing"),

@@ -7,13 +7,18 @@ from dataclasses import replace
 import numpy as np
 
 from foldfab.export.frames import moved, to_sheet
+from foldfab.export.packing import packed
 from foldfab.export.shell import GRID_DIGITS, Shell, bounds, snapped
-from foldfab.fabrication.model import Assembly
-from foldfab.fabrication.posture import printed_turn
+from foldfab.fabrication.lying import lying
+from foldfab.fabrication.model import Assembly, Body
+from foldfab.fabrication.posture import needs_pins, printed_turn
 from foldfab.geometry.arrays import Array
 
 FIT_MM = 1e-6
 """How far the print may stand out of the build volume by rounding."""
+
+SPACE_MM = 6.0
+"""Room between parts that are printed side by side: what slicers leave by themselves."""
 
 
 def on_bed(assembly: Assembly) -> tuple[Shell, ...]:
@@ -27,6 +32,35 @@ def on_bed(assembly: Assembly) -> tuple[Shell, ...]:
     shift = np.array([volume[0] / 2 - middle[0], volume[1] / 2 - middle[1], -low[2]])
     shells = tuple(snapped(body, p + shift) for body, p in zip(assembly.bodies, points, strict=True))
     return _grounded(shells)
+
+
+def on_plates(assembly: Assembly) -> tuple[tuple[Shell, ...], ...]:
+    """All bodies, each flat on the bed for itself, spread over as many plates as it takes, each in the bed's middle."""
+    volume = assembly.solution.scaffold.recipe.print.printer.build_volume
+    laid = [lying(body) for body in assembly.bodies]
+    sizes = [(float(x), float(y)) for x, y in (np.ptp(points[:, :2], axis=0) for points in laid)]
+    spots = packed(sizes, (volume[0], volume[1]), SPACE_MM)
+    plates: list[list[tuple[Body, Array]]] = [[] for _ in range(1 + max(spot.plate for spot in spots))]
+    for body, points, spot in zip(assembly.bodies, laid, spots, strict=True):
+        turned = _quarter(points) if spot.is_turned else points
+        corner = np.append(turned[:, :2].min(axis=0) - spot.corner, 0.0)
+        plates[spot.plate].append((body, turned - corner))
+    return tuple(_centred(plate, volume) for plate in plates)
+
+
+def print_files(assembly: Assembly) -> dict[str, tuple[Shell, ...]]:
+    """By the name of the print file, the bodies in it as they lie on the bed."""
+    name = assembly.solution.scaffold.recipe.name
+    if not needs_pins(assembly.posture):
+        return {f"{name}.3mf": on_bed(assembly)}
+    return {f"{name}-{number}.3mf": shells for number, shells in enumerate(on_plates(assembly), 1)}
+
+
+def _centred(plate: list[tuple[Body, Array]], volume: tuple[float, float, float]) -> tuple[Shell, ...]:
+    heap = np.vstack([points for _, points in plate])
+    middle = (heap.min(axis=0) + heap.max(axis=0)) / 2
+    shift = np.array([volume[0] / 2 - middle[0], volume[1] / 2 - middle[1], 0.0])
+    return tuple(snapped(body, points + shift) for body, points in plate)
 
 
 def _postured(assembly: Assembly) -> list[Array]:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from foldfab.export.bed import print_files
 from foldfab.export.frames import moved, sheet_poses, to_sheet
 from foldfab.export.shell import Shell
 from foldfab.export.version import foldfab_version
@@ -76,7 +77,7 @@ def _print(assembly: Assembly) -> dict[str, Any]:
         "thickness_mm": _length(max([thickness.panel, *(c.panel for c in assembly.solution.chains)])),
         "clearance_mm": _length(thickness.gap),
         "printer": {"name": printer.name, "build_volume_mm": _lengths(np.array(printer.build_volume))},
-        "print_files": [f"{scaffold.recipe.name}.3mf"],
+        "print_files": list(print_files(assembly)),
     }
 
 

@@ -51,6 +51,7 @@ class Stated:
     """The fields of `sheet.json` that are checked."""
 
     name: str
+    posture: str
     direction: Array
     """(3,) unit vector."""
     clearance: float
@@ -102,6 +103,7 @@ def stated(sheet: dict[str, Any]) -> Stated:
         raise ValueError("parts are none, or share a name")
     return Stated(
         name=_text(sheet["name"]),
+        posture=_text(sheet["posture"]),
         direction=direction,
         clearance=_number(sheet["clearance_mm"]),
         bed=frozen(sheet["printer"]["build_volume_mm"], 3),

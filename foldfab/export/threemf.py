@@ -1,4 +1,4 @@
-"""The print file: a 3MF of one build item, one object, one mesh, its bodies as disjoint shells.
+"""The print file: a 3MF of one build item, one object, one mesh, its bodies as disjoint shells; loose parts apart.
 
 Slicers take several objects apart and drop each to the bed, so the bodies' names and ranges stand beside the mesh,
 in the records that PrusaSlicer and its kin keep for the volumes of an object.
@@ -24,13 +24,18 @@ FIXED_TIME = (1980, 1, 1, 0, 0, 0)
 XML = '<?xml version="1.0" encoding="UTF-8"?>\n'
 
 
-def threemf_bytes(title: str, shells: tuple[Shell, ...]) -> bytes:
-    """A 3MF of the shells as they lie on the bed, millimetres."""
+Object = tuple[str, tuple[Shell, ...]]
+"""Name and bodies."""
+
+
+def threemf_bytes(title: str, shells: tuple[Shell, ...], *, is_loose: bool = False) -> bytes:
+    """A 3MF of the shells as they lie on the bed, millimetres: one object, or an object each where they are loose."""
+    objects: list[Object] = [(s.name, (s,)) for s in shells] if is_loose else [(title, shells)]
     files = {
         "[Content_Types].xml": _content_types(),
         "_rels/.rels": _relationships(),
-        "3D/3dmodel.model": _model(title, shells),
-        "Metadata/Slic3r_PE_model.config": _config(title, shells),
+        "3D/3dmodel.model": _model(title, objects),
+        "Metadata/Slic3r_PE_model.config": _config(objects),
     }
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:
@@ -65,11 +70,12 @@ def _relationships() -> str:
     return f'{XML}<Relationships xmlns="{PACKAGE}/relationships">\n{row}</Relationships>\n'
 
 
-def _model(title: str, shells: tuple[Shell, ...]) -> str:
+def _model(title: str, objects: list[Object]) -> str:
     colours = "".join(
         f'   <base name="{name}" displaycolor="#{r:02X}{g:02X}{b:02X}"/>\n'
         for name, (r, g, b) in zip(NAMES, COLOURS, strict=True)
     )
+    items = "".join(f'  <item objectid="{number}"/>\n' for number in _numbers(objects))
     return (
         f'{XML}<model unit="millimeter" xml:lang="en-US" xmlns="{CORE}"'
         ' xmlns:slic3rpe="http://schemas.slic3r.org/3mf/2017/06">\n'
@@ -77,9 +83,21 @@ def _model(title: str, shells: tuple[Shell, ...]) -> str:
         f' <metadata name="Title">{_xml_text(title)}</metadata>\n'
         f' <metadata name="Application">foldfab {foldfab_version()}</metadata>\n'
         f' <resources>\n  <basematerials id="{MATERIALS_ID}">\n{colours}  </basematerials>\n'
-        f'  <object id="{OBJECT_ID}" type="model" name={xml_attribute(title)} pid="{MATERIALS_ID}" pindex="0">\n'
-        f"   <mesh>\n{_vertices(shells)}{_triangles(shells)}   </mesh>\n  </object>\n </resources>\n"
-        f' <build>\n  <item objectid="{OBJECT_ID}"/>\n </build>\n</model>\n'
+        f"{''.join(map(_object, _numbers(objects), objects))} </resources>\n"
+        f" <build>\n{items} </build>\n</model>\n"
+    )
+
+
+def _numbers(objects: list[Object]) -> list[int]:
+    """The ids of objects, which share their numbers with the materials."""
+    return [OBJECT_ID, *range(MATERIALS_ID + 1, MATERIALS_ID + len(objects))]
+
+
+def _object(number: int, one: Object) -> str:
+    name, shells = one
+    return (
+        f'  <object id="{number}" type="model" name={xml_attribute(name)} pid="{MATERIALS_ID}" pindex="0">\n'
+        f"   <mesh>\n{_vertices(shells)}{_triangles(shells)}   </mesh>\n  </object>\n"
     )
 
 
@@ -110,7 +128,13 @@ def _triangles(shells: tuple[Shell, ...]) -> str:
     return f"    <triangles>\n{''.join(rows)}    </triangles>\n"
 
 
-def _config(title: str, shells: tuple[Shell, ...]) -> str:
+def _config(objects: list[Object]) -> str:
+    rows = "".join(map(_names, _numbers(objects), objects))
+    return f"{XML}<config>\n{rows}</config>\n"
+
+
+def _names(number: int, one: Object) -> str:
+    title, shells = one
     rows: list[str] = []
     start = 0
     for shell in shells:
@@ -121,5 +145,4 @@ def _config(title: str, shells: tuple[Shell, ...]) -> str:
         )
         start += len(shell.faces)
     name = f'  <metadata type="object" key="name" value={xml_attribute(title)}/>\n'
-    body = f"{name}{''.join(rows)}"
-    return f'{XML}<config>\n <object id="{OBJECT_ID}" instances_count="1">\n{body} </object>\n</config>\n'
+    return f' <object id="{number}" instances_count="1">\n{name}{"".join(rows)} </object>\n'

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from foldfab.errors import MissingLibraryError
 from foldfab.export.animation import glb_bytes
-from foldfab.export.bed import on_bed
+from foldfab.export.bed import print_files
 from foldfab.export.mesh_files import file_stems, stl_bytes
 from foldfab.export.preview import preview_png
 from foldfab.export.sheet import sheet_json
@@ -15,6 +15,7 @@ from foldfab.export.shell import Shell, sheet_shells
 from foldfab.export.swap import replace_folder
 from foldfab.export.threemf import threemf_bytes
 from foldfab.fabrication.model import Assembly
+from foldfab.fabrication.posture import needs_pins
 
 
 def write(assembly: Assembly, folder: Path) -> list[Path]:
@@ -36,12 +37,18 @@ def contents(assembly: Assembly) -> dict[str, bytes]:
     stl_paths = {name: f"stl/{stem}.stl" for name, stem in stems.items()}
     return {
         **{stl_paths[shell.name]: stl_bytes(shell) for shell in shells},
-        f"{recipe.name}.3mf": threemf_bytes(recipe.name, on_bed(assembly)),
+        **_prints(assembly),
         f"{recipe.name}.glb": glb_bytes(assembly, shells),
         "sheet.json": sheet_json(assembly, shells, stl_paths).encode(),
         "recipe.json": _recipe_json(assembly),
         "preview.png": _preview(assembly, shells),
     }
+
+
+def _prints(assembly: Assembly) -> dict[str, bytes]:
+    is_loose = needs_pins(assembly.posture)
+    files = print_files(assembly)
+    return {name: threemf_bytes(name[:-4], shells, is_loose=is_loose) for name, shells in files.items()}
 
 
 def _preview(assembly: Assembly, shells: tuple[Shell, ...]) -> bytes:

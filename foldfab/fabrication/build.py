@@ -14,7 +14,7 @@ from foldfab.fabrication.inspect import inspect
 from foldfab.fabrication.model import Assembly, Body, Finding, Joint
 from foldfab.fabrication.panels import panels
 from foldfab.fabrication.plates import axis_of, plate
-from foldfab.fabrication.posture import edge_up
+from foldfab.fabrication.posture import edge_up, needs_pins
 from foldfab.fabrication.relief import relieved
 from foldfab.fabrication.solids import Solid
 from foldfab.folding.kinematics import configuration, key_times
@@ -40,6 +40,8 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
     tell = progress or (lambda what, share: None)
     options = solution.scaffold.recipe.print
     problem = hinge_problem(options.hinge, options.thickness, posture)
+    if needs_pins(posture) and options.hinge == "cone":
+        problem = "hinges pinned by cones print in place only; load the recipe with the posture plate, or another hinge"
     if problem:
         raise FabricationError(problem)
     tell("solids", 0.0)
@@ -52,6 +54,7 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
     made = {name: solids.tidied(body) for name, body in made.items()}
     found = tuple(_joints(solution))
     bodies = tuple(_body(solution, name, made[name]) for name in sorted(made))
+    findings += [Finding("posture", options.why)] if options.why else []
     findings += [Finding("note", note) for note in solution.notes]
     draft = Assembly(solution, bodies, found, times, {n: poses[n] for n in made}, posture, (), up)
     findings += inspect(draft, made, lambda share: tell("inspection", share))

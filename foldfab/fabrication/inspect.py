@@ -13,8 +13,9 @@ from collections.abc import Callable
 import numpy as np
 
 from foldfab.fabrication import solids
+from foldfab.fabrication.lying import lying
 from foldfab.fabrication.model import Assembly, Finding
-from foldfab.fabrication.posture import printed_pose, printed_turn
+from foldfab.fabrication.posture import needs_pins, printed_pose, printed_turn
 from foldfab.fabrication.solids import Solid
 from foldfab.folding.kinematics import configuration
 from foldfab.geometry.arrays import Array
@@ -85,17 +86,26 @@ def _soundness(made: dict[str, Solid]) -> list[Finding]:
 
 
 def _fits(assembly: Assembly) -> list[Finding]:
-    size, printer = printed_extent(assembly), assembly.solution.scaffold.recipe.print.printer
+    printer = assembly.solution.scaffold.recipe.print.printer
     bed = np.array(printer.build_volume)
-    if (size <= bed).all() or (size[[1, 0, 2]] <= bed).all():
+    too_large = [(n, s) for n, s in _sizes(assembly) if not ((s <= bed).all() or (s[[1, 0, 2]] <= bed).all())]
+    if not too_large:
         return []
+    name, size = max(too_large, key=lambda row: float((row[1] / bed).max()))
     told = " x ".join(f"{v:.1f}" for v in size)
     share = min(float((bed / size).min()), 0.999)
     text = (
-        f"{assembly.posture} it is {told} mm and does not fit the {printer.name}; "
+        f"{assembly.posture} {name} is {told} mm and does not fit the {printer.name}; "
         f"print at scale {assembly.solution.scaffold.scale * share:.4g} or smaller"
     )
     return [Finding("bed", text, is_fatal=True)]
+
+
+def _sizes(assembly: Assembly) -> list[tuple[str, Array]]:
+    """(3,) mm of each thing that has to fit the bed, by name."""
+    if needs_pins(assembly.posture):
+        return [(body.name, np.ptp(lying(body), axis=0)) for body in assembly.bodies]
+    return [("it", printed_extent(assembly))]
 
 
 def _gaps(assembly: Assembly, made: dict[str, Solid]) -> list[Finding]:

@@ -24,7 +24,7 @@ from pydantic import (
 from pydantic_core import PydanticCustomError
 
 from foldfab.recipe.hinges import HingeKind, hinge_problem
-from foldfab.recipe.model import Collisions, FoldOptions, Mechanism, Ordering, Pattern, Posture, PrintOptions
+from foldfab.recipe.model import Collisions, FoldOptions, Mechanism, Ordering, Pattern, PostureWish, PrintOptions
 from foldfab.recipe.model import Side as FoldSide
 from foldfab.recipe.names import folder_name_problem, has_control_characters, part_name_problem
 from foldfab.recipe.patterns import hinges_problem, is_covered, pattern_problem, rigid_problem, window_problem
@@ -273,7 +273,10 @@ class PrintForm(Form):
     clearance: float = Field(
         default=_PRINT.clearance, ge=0.15, le=1, description="Gap that a hinge is printed with, mm."
     )
-    posture: Posture = Field(default=_PRINT.posture, description="Whether it is printed open or folded.")
+    posture: PostureWish = Field(
+        default=_PRINT.posture,
+        description="Printed open; folded flat; on edge, hinge axes vertical; as loose parts on plates; or what is best.",
+    )
     hinge: Annotated[HingeKind, AfterValidator(_makeable)] = Field(
         default=_PRINT.hinge, description="How hinges are pinned together."
     )

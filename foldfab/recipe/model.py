@@ -9,6 +9,8 @@ from foldfab.geometry.arrays import Array, frozen
 from foldfab.recipe.hinges import HingeKind
 
 Posture = Literal["open", "folded", "edge", "plate"]
+PostureWish = Literal["open", "folded", "edge", "plate", "auto"]
+"""A posture, or whichever is best."""
 Ordering = Literal["greedy", "optimal"]
 Collisions = Literal["swept", "regions"]
 Mechanism = Literal["in-place", "slanted", "deleted"]
@@ -115,7 +117,9 @@ class PrintOptions:
     """K, the thickness of plates and panels, mm in print."""
     clearance: float = 0.3
     """g, the gap that a hinge is printed with, mm in print."""
-    posture: Posture = "open"
+    posture: PostureWish = "open"
+    why: str = ""
+    """Why it is this posture, where it was chosen for the maker."""
     hinge: HingeKind = "cone"
     """How the knuckles of a hinge are pinned together."""
     latch: bool = False

@@ -76,7 +76,7 @@ EXPECTED = MappingProxyType(
         "build_volume[]": f"a length from {SMALLEST:g} to {LARGEST:g} mm",
         "thickness": "a number of millimetres from 2 to 20",
         "clearance": "a number of millimetres from 0.15 to 1",
-        "posture": '"open" or "folded"',
+        "posture": 'one of "open", "folded", "edge", "plate", "auto"',
         "hinge": '"cone", "filament", "screw-m2", "screw-m3" or "clip"',
         "latch": "true or false",
         "scale": '"fit" or a number from 0.00001 to 1000, such as 0.2',

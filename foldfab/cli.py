@@ -83,6 +83,7 @@ def _print(arguments: argparse.Namespace) -> int:
     from foldfab import pipeline
     from foldfab.report import summary
 
+    recipe = _settled(recipe, progress)
     progress("looking for the cheapest fold")
     solution = _advised(recipe, progress, lambda: pipeline.foldabilize(recipe))
     progress("building the solids")
@@ -105,6 +106,7 @@ def _fold(arguments: argparse.Namespace) -> int:
     from foldfab import pipeline, report
     from foldfab.errors import FoldfabError
 
+    recipe = _settled(recipe, progress)
     progress("looking for the cheapest fold")
     pipeline.prepare()
     count = arguments.alternatives
@@ -168,6 +170,18 @@ def _check(arguments: argparse.Namespace) -> int:
     return 0 if found.ok else 1
 
 
+def _postures(arguments: argparse.Namespace) -> int:
+    progress = _Progress(arguments.quiet)
+    recipe = _load(arguments, progress)
+    from foldfab import postures
+    from foldfab.report import postures_table
+
+    rows = postures.compared(recipe, progress)
+    progress.done()
+    print(postures_table(rows))
+    return 0
+
+
 def _recipes(arguments: argparse.Namespace) -> int:
     from foldfab import pipeline
 
@@ -186,6 +200,14 @@ def _compose(arguments: argparse.Namespace) -> int:
     pipeline.save(recipe, file)
     print(f"{file}: {len(recipe.parts)} parts")
     return 0
+
+
+def _settled(recipe: Recipe, progress: _Progress) -> Recipe:
+    if recipe.print.posture != "auto":
+        return recipe
+    from foldfab import postures
+
+    return postures.settled(recipe, progress)
 
 
 def _load(arguments: argparse.Namespace, progress: _Progress) -> Recipe:
@@ -231,7 +253,9 @@ def _parser() -> argparse.ArgumentParser:
     folding.add_argument(
         "--verify", action="store_true", help="try the fold out at every moment, apart from the search"
     )
-    for command, quiet in ((making, "show no progress and no summary"), (folding, "show no progress")):
+    comparing = _command(commands, "postures", _postures, "what each posture takes, by the slicer")
+    told = ((comparing, "show no progress"), (making, "show no progress and no summary"), (folding, "show no progress"))
+    for command, quiet in told:
         command.add_argument("recipe", metavar="RECIPE", help="a .json file, or the name of a shipped recipe")
         command.add_argument("-q", "--quiet", action="store_true", help=quiet)
         _add_options(command)

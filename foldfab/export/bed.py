@@ -24,13 +24,14 @@ SPACE_MM = 6.0
 def on_bed(assembly: Assembly) -> tuple[Shell, ...]:
     """All bodies as they will be printed: on z = 0, in the middle of the bed, turned a quarter if they only fit so."""
     volume = np.array(assembly.solution.scaffold.recipe.print.printer.build_volume)
-    points = _postured(assembly)
+    bodies = _printed(assembly)
+    points = _postured(assembly, bodies)
     if not _fits(points, volume) and _fits(turned := [_quarter(p) for p in points], volume):
         points = turned
     low, high = np.vstack(points).min(axis=0), np.vstack(points).max(axis=0)
     middle = (low + high) / 2
     shift = np.array([volume[0] / 2 - middle[0], volume[1] / 2 - middle[1], -low[2]])
-    shells = tuple(snapped(body, p + shift) for body, p in zip(assembly.bodies, points, strict=True))
+    shells = tuple(snapped(body, p + shift) for body, p in zip(bodies, points, strict=True))
     return _grounded(shells)
 
 
@@ -63,12 +64,18 @@ def _centred(plate: list[tuple[Body, Array]], volume: tuple[float, float, float]
     return tuple(snapped(body, points + shift) for body, points in plate)
 
 
-def _postured(assembly: Assembly) -> list[Array]:
+def _printed(assembly: Assembly) -> tuple[Body, ...]:
+    """The bodies, with their props where they are printed with one."""
+    propped = {body.name: body for body in assembly.propped}
+    return tuple(propped.get(body.name, body) for body in assembly.bodies)
+
+
+def _postured(assembly: Assembly, bodies: tuple[Body, ...]) -> list[Array]:
     if assembly.posture == "open":
-        return [to_sheet(assembly, body.vertices) for body in assembly.bodies]
+        return [to_sheet(assembly, body.vertices) for body in bodies]
     # Folded flat, the canonical frame's floor is the bed: d = -Z.
     turn = printed_turn(assembly)
-    return [moved(body.vertices, assembly.poses[body.name][-1]) @ turn.T for body in assembly.bodies]
+    return [moved(body.vertices, assembly.poses[body.name][-1]) @ turn.T for body in bodies]
 
 
 def _fits(points: list[Array], volume: Array) -> bool:

@@ -15,6 +15,7 @@ from foldfab.fabrication.model import Assembly, Body, Finding, Joint
 from foldfab.fabrication.panels import panels
 from foldfab.fabrication.plates import axis_of, plate
 from foldfab.fabrication.posture import edge_up, needs_pins
+from foldfab.fabrication.props import propped
 from foldfab.fabrication.relief import relieved
 from foldfab.fabrication.solids import Solid
 from foldfab.folding.kinematics import configuration, key_times
@@ -57,6 +58,9 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
     findings += [Finding("posture", options.why)] if options.why else []
     findings += [Finding("note", note) for note in solution.notes]
     draft = Assembly(solution, bodies, found, times, {n: poses[n] for n in made}, posture, (), up)
+    if up is not None:
+        props = propped(made, poses, up, solution.thickness.gap)
+        draft = replace(draft, propped=tuple(_body(solution, name, props[name]) for name in sorted(props)))
     findings += inspect(draft, made, lambda share: tell("inspection", share))
     fatal = [f for f in findings if f.is_fatal]
     if fatal:

@@ -85,6 +85,9 @@ class Assembly:
     up: Array | None = None
     """(3,) the hinge direction that points up where it stands on edge, canonical frame; None in other postures."""
 
+    propped: tuple[Body, ...] = ()
+    """The bodies that are printed with a prop to be broken off, with it; sorted by name."""
+
     def __post_init__(self) -> None:
         object.__setattr__(self, "times", frozen(self.times, -1))
         if self.up is not None:

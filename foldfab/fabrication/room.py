@@ -28,7 +28,7 @@ def share_of_bed(solution: FoldSolution, posture: Posture) -> float:
 
 
 def largest_scale(recipe: Recipe, posture: Posture, size: Array, bed: Array) -> float:
-    """A first guess at the largest scale that fits: `size` (3,) true, with d as its z unless open, and `bed` (3,) mm."""
+    """A first guess at the largest scale that fits: `size` (3,) true, d as its z unless open; `bed` (3,) mm."""
     size = np.maximum(size, 1e-9)
     if posture == "plate":
         widest = np.array([np.sort(part.size)[:0:-1] for part in recipe.parts]).max(axis=0)

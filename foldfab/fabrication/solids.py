@@ -11,13 +11,16 @@ from collections.abc import Iterable
 from typing import TypeAlias
 
 import numpy as np
-from manifold3d import CrossSection, Error, Manifold, Mesh, OpType
+from manifold3d import CrossSection, Error, JoinType, Manifold, Mesh, OpType
 
 from foldfab.errors import FabricationError
 from foldfab.geometry.arrays import Array, Indices
 
 Solid: TypeAlias = Manifold
 """A closed solid of the kernel."""
+
+Outline: TypeAlias = CrossSection
+"""A flat outline of the kernel."""
 
 SIDES = 32
 """Sides of the polygon that stands for a circle."""
@@ -57,6 +60,16 @@ def cone(radius: float, base: float, tip: float, x: float, z: float, *, is_hole:
 def hull_of(points: Array) -> Solid:
     """The convex hull of points (n, 3)."""
     return checked(Manifold.hull_points(np.asarray(points, dtype=np.float64).tolist()))
+
+
+def grown(outline: Outline, margin: float) -> Outline:
+    """The outline, `margin` mm wider on all sides."""
+    return outline.offset(margin, JoinType.Miter, 2.0)
+
+
+def rectangle(middle: Array, sides: Array) -> Outline:
+    """A rectangle around `middle` (2,) with `sides` (2,), mm."""
+    return CrossSection.square(tuple(sides.tolist()), center=True).translate(tuple(middle.tolist()))
 
 
 def union(parts: list[Solid]) -> Solid:

@@ -67,7 +67,8 @@ def override(
     options = _given({**sizes, "posture": posture, "hinge": hinge, "latch": latch})
     way = {} if direction is None else {"direction": _vector(direction)}
     wrong = _check(FoldForm, fold)
-    problems = _check(_DirectionForm, way) + wrong + _check(PrintForm, _with_own(recipe, options)) + _check_printer(printer)
+    problems = _check(_DirectionForm, way) + wrong + _check(PrintForm, _with_own(recipe, options))
+    problems += _check_printer(printer)
     problems += _check_rigid(recipe, rigid) + _check_patterns(recipe, {} if wrong else fold, rigid)
     if problems:
         raise RecipeError(SOURCE, tuple(problems))

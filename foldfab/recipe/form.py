@@ -275,7 +275,7 @@ class PrintForm(Form):
     )
     posture: PostureWish = Field(
         default=_PRINT.posture,
-        description="Printed open; folded flat; on edge, hinge axes vertical; as loose parts on plates; or what is best.",
+        description="Open; folded flat; on edge, hinge axes vertical; in loose parts on plates; or what is best.",
     )
     hinge: Annotated[HingeKind, AfterValidator(_makeable)] = Field(
         default=_PRINT.hinge, description="How hinges are pinned together."

@@ -2,7 +2,7 @@
 
 python benchmarks/posture_benchmark.py [RECIPE ...]
 
-The scale is the largest at which the recipe fits its printer open.
+The scale is the largest at which all postures that print in one piece fit the recipe's printer.
 """
 
 from __future__ import annotations

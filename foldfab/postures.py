@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 POSTURES: tuple[Posture, ...] = get_args(Posture)
 IN_PLACE: tuple[Posture, ...] = ("edge", "folded", "open")
 """What `auto` chooses from, by rule in this order: what is printed in one piece needs no assembling."""
+SCALE_SLACK = 0.99
+"""A scale at which one posture just fits, and another by its solids all but does, is taken a little smaller."""
 SAME_SUPPORT = 1.0
 """Grams of support that are not worth another posture."""
 
@@ -38,7 +40,7 @@ class Row:
 
 
 def compared(recipe: Recipe, tell: Callable[[str], None] = lambda text: None) -> tuple[Row, ...]:
-    """All postures at one scale: that of the recipe or, where it is to fit, the largest at which it fits open.
+    """All postures at one scale: that of the recipe or, where it is to fit, the largest at which all in-place ones do.
 
     Raises:
         MissingLibraryError: PrusaSlicer is not installed.
@@ -89,9 +91,15 @@ def _chosen(recipe: Recipe, posture: Posture, why: str) -> Recipe:
 def _scaled(recipe: Recipe) -> Recipe:
     if recipe.print.scale is not None:
         return recipe
-    opened = replace(recipe, print=replace(recipe.print, posture="open"))
-    scale = pipeline.foldabilize(opened).scaffold.scale
-    return replace(recipe, print=replace(recipe.print, scale=scale))
+    scales = []
+    for posture in IN_PLACE:
+        wanted = replace(recipe, print=replace(recipe.print, posture=posture))
+        try:
+            scales.append(pipeline.foldabilize(wanted).scaffold.scale)
+        except FoldfabError:
+            if posture == "open":
+                raise
+    return replace(recipe, print=replace(recipe.print, scale=SCALE_SLACK * min(scales)))
 
 
 def _built(recipe: Recipe, posture: Posture) -> Assembly:

@@ -45,7 +45,7 @@ def test_the_sheet_names_its_files_and_the_check_holds(folder: Path) -> None:
 
 def test_a_part_in_the_air_is_noticed(loose: Assembly, folder: Path) -> None:
     (shells,) = on_plates(loose)
-    raised = (replace(shells[0], vertices=shells[0].vertices + [0, 0, 1]), *shells[1:])
+    raised = (replace(shells[0], vertices=np.add(shells[0].vertices, [0, 0, 1])), *shells[1:])
     (folder / "stool-1.3mf").write_bytes(threemf_bytes("stool-1", raised, is_loose=True))
     assert not _row(folder, "3mf")
 

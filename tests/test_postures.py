@@ -21,7 +21,7 @@ def _rows(*given: postures.Row) -> object:
     return lambda recipe, tell=None: given
 
 
-@pytest.mark.parametrize(("name", "posture"), [("bench-legs", "edge"), ("bench", "folded"), ("desk-shelf", "folded")])
+@pytest.mark.parametrize(("name", "posture"), [("bench-legs", "edge"), ("bench", "folded"), ("bed", "folded")])
 def test_without_a_slicer_a_rule_decides(monkeypatch: pytest.MonkeyPatch, name: str, posture: str) -> None:
     monkeypatch.setattr(postures, "compared", _absent)
     settled = postures.settled(pipeline.load(name, posture="auto"))

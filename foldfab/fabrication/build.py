@@ -15,7 +15,7 @@ from foldfab.fabrication.model import Assembly, Body, Finding, Joint
 from foldfab.fabrication.panels import panels
 from foldfab.fabrication.plates import axis_of, plate
 from foldfab.fabrication.posture import edge_up, needs_pins
-from foldfab.fabrication.props import propped
+from foldfab.fabrication.props import planed, propped
 from foldfab.fabrication.relief import relieved
 from foldfab.fabrication.solids import Solid
 from foldfab.folding.kinematics import configuration, key_times
@@ -28,6 +28,8 @@ from foldfab.recipe.model import Posture
 Progress = Callable[[str, float], None]
 """Called with what is being done and the share of it that is done."""
 
+PLANED = 0.5
+"""What may be taken off one end of a part for it to stand flush with others on edge, as a share of K."""
 HINGE_SKIN = 0.05
 """Faces this close to a knuckle's radius are shown as hinge, mm."""
 
@@ -51,6 +53,8 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
     poses = configuration(solution, times)
     up = edge_up(solution, made, poses) if posture == "edge" else None
     if up is not None:
+        made, taken = planed(made, poses, up, PLANED * solution.thickness.panel)
+        findings += _planed(taken)
         made = relieved(solution, made, up)
     made = {name: solids.tidied(body) for name, body in made.items()}
     found = tuple(_joints(solution))
@@ -83,6 +87,15 @@ def _solids(solution: FoldSolution) -> tuple[dict[str, Solid], list[Finding]]:
     for chain in solution.chains:
         made.update(zip(chain.panels, panels(chain, solution.thickness), strict=True))
     return made, findings
+
+
+def _planed(taken: dict[str, float]) -> list[Finding]:
+    if not taken:
+        return []
+    told = (
+        f"{', '.join(sorted(taken))} lose up to {max(taken.values()):.2f} mm at one end, so that more stands on the bed"
+    )
+    return [Finding("planed", told)]
 
 
 def _body(solution: FoldSolution, name: str, solid: Solid) -> Body:

@@ -1,7 +1,8 @@
 """Props under what would begin in the air on edge: blocks that are printed with a part and broken off it.
 
-A part that is a little narrower than the others does not reach the bed where hinge axes are vertical. A block stands
-below its lowest face, a layer of air apart from it but for thin stripes, with short bridges between them.
+Where parts are narrower than others by no more than half a plate, the others are planed flush. What is narrower still
+does not reach the bed: a block stands below its lowest face, a layer of air apart from it but for thin stripes, with
+short bridges between them.
 Only the print file has props: the part that folds, its STL and the animation are without.
 """
 
@@ -22,6 +23,25 @@ TALL = 8.0
 """A part higher than this over the bed gets no prop: slicers build better towers, mm."""
 LEAST = 0.5
 """A part lower than this over the bed gets none either: it is not worth the breaking, mm."""
+
+
+def planed(
+    made: dict[str, Solid], poses: dict[str, Array], up: Array, most: float
+) -> tuple[dict[str, Solid], dict[str, float]]:
+    """The bodies flush at the bed, in the open posture, and by name what that took off, mm.
+
+    All are cut where the highest body begins that begins at most `most` mm above the bed.
+    """
+    stand = {name: _pose(poses[name][-1], up) for name in made}
+    placed = {name: solids.moved(body, stand[name]) for name, body in made.items()}
+    low = {name: float(solids.bounds(body)[0][2]) for name, body in placed.items()}
+    level = max(z for z in low.values() if z - min(low.values()) <= most)
+    found, taken = dict(made), dict[str, float]()
+    for name in sorted(made):
+        if level - low[name] > ON_BED:
+            flush = solids.checked(placed[name].trim_by_plane((0.0, 0.0, 1.0), level))
+            found[name], taken[name] = solids.moved(flush, _inverse(stand[name])), level - low[name]
+    return found, taken
 
 
 def propped(made: dict[str, Solid], poses: dict[str, Array], up: Array, gap: float) -> dict[str, Solid]:

@@ -79,8 +79,20 @@ def test_a_part_lies_on_its_side_with_less_to_support(standing: Assembly) -> Non
 
 
 def test_a_part_above_the_bed_gets_a_prop_in_the_print_only() -> None:
-    made = pipeline.fabricate(pipeline.foldabilize(pipeline.load("desk-shelf", posture="edge")))
+    made = pipeline.fabricate(pipeline.foldabilize(pipeline.load("bed", posture="edge")))
     bodies = {body.name: body for body in made.bodies}
     assert made.propped
+    assert all(body.name.startswith("leg-") for body in made.propped)
     assert all(body.volume > bodies[body.name].volume for body in made.propped)
     assert replace(made, propped=()).bodies == made.bodies
+
+
+def test_what_is_a_little_wider_is_planed_flush() -> None:
+    made = pipeline.fabricate(pipeline.foldabilize(pipeline.load("desk-shelf", posture="edge")))
+    assert not made.propped
+    assert [f.code for f in made.findings if f.code == "planed"] == ["planed"]
+    turn = bed_turn(made.up)
+    low = [
+        float((body.vertices @ (turn @ printed_pose(made, body.name)[:3, :3]).T)[:, 2].min()) for body in made.bodies
+    ]
+    assert max(low) - min(low) < 0.02

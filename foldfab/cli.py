@@ -23,7 +23,7 @@ USAGE, BUG, INTERRUPTED, UNHEARD = 2, 70, 130, 141
 
 _OPTIONS: tuple[tuple[str, str, str], ...] = (
     ("--direction", "D", 'folding direction: an axis such as -z, a vector such as 0,0,-1, or "auto"'),
-    ("--posture", "P", "print it open or folded"),
+    ("--posture", "P", "print it open, folded, edge (folded, hinge axes vertical), plate (loose parts), or auto"),
     ("--printer", "NAME", "a known printer such as prusa-mk4, or a build volume such as 200x200x180"),
     ("--scale", "S", 'print size over true size: "fit", a number, or a ratio such as 1:5'),
     ("--hinge", "STYLE", "cone or clip, printed in place; filament, screw-m2 or screw-m3, pinned after printing"),
@@ -91,6 +91,7 @@ def _print(arguments: argparse.Namespace) -> int:
     if arguments.step:
         progress("loading build123d")
         pipeline.require_cad()
+    recipe = _settled(recipe, progress)
     progress("looking for the cheapest fold")
     solution = _advised(recipe, progress, lambda: pipeline.foldabilize(recipe))
     progress("building the solids")
@@ -113,6 +114,7 @@ def _fold(arguments: argparse.Namespace) -> int:
     from foldfab import pipeline, report
     from foldfab.errors import FoldfabError
 
+    recipe = _settled(recipe, progress)
     progress("looking for the cheapest fold")
     pipeline.prepare()
     count = arguments.alternatives
@@ -176,6 +178,18 @@ def _check(arguments: argparse.Namespace) -> int:
     return 0 if found.ok else 1
 
 
+def _postures(arguments: argparse.Namespace) -> int:
+    progress = _Progress(arguments.quiet)
+    recipe = _load(arguments, progress)
+    from foldfab import postures
+    from foldfab.report import postures_table
+
+    rows = postures.compared(recipe, progress)
+    progress.done()
+    print(postures_table(rows))
+    return 0
+
+
 def _recipes(arguments: argparse.Namespace) -> int:
     from foldfab import pipeline
 
@@ -214,6 +228,14 @@ def _calibrate(arguments: argparse.Namespace) -> int:
     file = pipeline.calibrate(arguments.printer, arguments.clearance)
     print(f"{arguments.printer} prints hinges with {arguments.clearance:g} mm from now on ({file})")
     return 0
+
+
+def _settled(recipe: Recipe, progress: _Progress) -> Recipe:
+    if recipe.print.posture != "auto":
+        return recipe
+    from foldfab import postures
+
+    return postures.settled(recipe, progress)
 
 
 def _load(arguments: argparse.Namespace, progress: _Progress) -> Recipe:
@@ -260,7 +282,9 @@ def _parser() -> argparse.ArgumentParser:
     folding.add_argument(
         "--verify", action="store_true", help="try the fold out at every moment, apart from the search"
     )
-    for command, quiet in ((making, "show no progress and no summary"), (folding, "show no progress")):
+    comparing = _command(commands, "postures", _postures, "what each posture takes, by the slicer")
+    told = ((comparing, "show no progress"), (making, "show no progress and no summary"), (folding, "show no progress"))
+    for command, quiet in told:
         command.add_argument("recipe", metavar="RECIPE", help="a .json file, or the name of a shipped recipe")
         command.add_argument("-q", "--quiet", action="store_true", help=quiet)
         _add_options(command)

@@ -9,12 +9,13 @@ write(assembly, Path("prints/bench"))
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from foldfab.errors import AbstractionError, FoldfabError, FoldingError
+from foldfab.errors import AbstractionError, FoldfabError, FoldingError, Problem, RecipeError
 from foldfab.geometry.arrays import Array
 from foldfab.recipe.model import Posture, Recipe
 
@@ -66,6 +67,8 @@ def coupon(folder: Path | str, printer: str, *, thickness: str | float, posture:
     from foldfab.recipe.edit import known_print, known_printer
 
     options = known_print(thickness=thickness, posture=posture)
+    if options.posture not in ("open", "folded"):
+        raise RecipeError("command line", (Problem("--posture", "a coupon is printed open or folded"),))
     return write_coupon(made(options.thickness, options.posture), known_printer(printer), Path(folder))
 
 
@@ -112,6 +115,7 @@ def foldabilize(recipe: Recipe) -> FoldSolution:
         AbstractionError: the parts make no scaffold along the direction; the message names directions that would do.
         FoldingError: nothing folds.
     """
+    recipe = with_pins(recipe)
     if recipe.direction is not None:
         return _along(recipe, recipe.direction)
     found: list[tuple[int, float, int, FoldSolution]] = []
@@ -127,6 +131,22 @@ def foldabilize(recipe: Recipe) -> FoldSolution:
     if not found:
         raise FoldingError(f"{recipe.name} folds along none of the six axis directions\n  " + "\n  ".join(reasons))
     return min(found, key=lambda f: f[:3])[3]
+
+
+def with_pins(recipe: Recipe) -> Recipe:
+    """The recipe with hinges that can be put together by hand, where it is to be printed in loose parts.
+
+    Raises:
+        FoldingError: the plates are too thin for them.
+    """
+    from foldfab.recipe.hinges import hinge_problem
+
+    if recipe.print.posture != "plate" or recipe.print.hinge != "cone":
+        return recipe
+    problem = hinge_problem("filament", recipe.print.thickness, "plate")
+    if problem:
+        raise FoldingError(f"{recipe.name}: printed apart, its hinges are pinned with filament; {problem}")
+    return replace(recipe, print=replace(recipe.print, hinge="filament"))
 
 
 def alternatives(recipe: Recipe, count: int) -> tuple[FoldSolution, ...]:
@@ -166,7 +186,7 @@ def fabricate(solution: FoldSolution, *, posture: Posture | None = None, progres
     from foldfab.fabrication.build import build
 
     tell = (lambda what, share: progress(f"{what} {share:.0%}")) if progress else None
-    return build(solution, posture or solution.scaffold.recipe.print.posture, tell)
+    return build(solution, posture or _settled(solution.scaffold.recipe), tell)
 
 
 def write(assembly: Assembly, folder: Path | str, *, step: bool = False) -> list[Path]:
@@ -234,21 +254,38 @@ def shipped() -> tuple[Path, ...]:
 
 
 def _along(recipe: Recipe, direction: Array) -> FoldSolution:
+    from foldfab.fabrication.room import share_of_bed
     from foldfab.folding.solve import solve
 
+    posture = _settled(recipe)
     if recipe.print.scale is not None:
-        return solve(_abstracted(recipe, direction, recipe.print.scale))
-    scale = _fitting_scale(recipe, direction)
+        return _standing(solve(_abstracted(recipe, direction, recipe.print.scale)), posture)
+    scale = _fitting_scale(recipe, direction, posture)
     for _ in range(SCALE_ROUNDS):
-        solution = solve(_abstracted(recipe, direction, scale))
-        share = _share_of_bed(solution)
+        solution = _standing(solve(_abstracted(recipe, direction, scale)), posture)
+        share = share_of_bed(solution, posture)
         if share <= 1.0:
             return solution
         scale *= 0.99 / share
     raise FoldingError(
-        f"{recipe.name}, {recipe.print.posture}, does not fit the {recipe.print.printer.name}; "
-        f"give a scale below {scale:.3g}"
+        f"{recipe.name}, {posture}, does not fit the {recipe.print.printer.name}; give a scale below {scale:.3g}"
     )
+
+
+def _settled(recipe: Recipe) -> Posture:
+    if recipe.print.posture == "auto":
+        raise FoldingError(f"{recipe.name}: its posture is auto; call foldfab.postures.settled(recipe) first")
+    return recipe.print.posture
+
+
+def _standing(solution: FoldSolution, posture: Posture) -> FoldSolution:
+    """The solution itself, if it can be printed in its posture."""
+    from foldfab.fabrication.posture import edge_problem
+
+    problem = edge_problem(solution) if posture == "edge" else None
+    if problem:
+        raise FoldingError(f"{solution.scaffold.recipe.name}: {problem}")
+    return solution
 
 
 def _abstracted(recipe: Recipe, direction: Array, scale: float) -> Scaffold:
@@ -272,21 +309,20 @@ def _has_scaffold(recipe: Recipe, axis: tuple[int, int, int], scale: float) -> b
         return False
 
 
-def _fitting_scale(recipe: Recipe, direction: Array) -> float:
-    """The largest scale at which the open furniture (printed folded: its footprint) fits the bed, either way round."""
+def _fitting_scale(recipe: Recipe, direction: Array, posture: Posture) -> float:
+    """About the largest scale at which the furniture fits the bed in its posture, either way round."""
+    from foldfab.fabrication.room import largest_scale
+
     size = _size(recipe)
     thickest = max(recipe.print.thickness, recipe.print.base_thickness or 0.0)
     bed = np.array(recipe.print.printer.build_volume) - MARGIN_THICKNESSES * thickest
     if (bed <= 0).any():
         raise FoldingError(f"the {recipe.print.printer.name} is too small for plates of {thickest:g} mm")
-    if recipe.print.posture == "folded":
+    if posture != "open":
         from foldfab.geometry.rotation import upright
 
         size = np.abs(upright(direction)) @ size
-        size[2] = 0.0
-    fits = bed / np.maximum(size, 1e-9)
-    turned = bed[[1, 0, 2]] / np.maximum(size, 1e-9)
-    return float(max(fits.min(), turned.min()))
+    return largest_scale(recipe, posture, size, bed)
 
 
 def _size(recipe: Recipe) -> Array:
@@ -295,14 +331,3 @@ def _size(recipe: Recipe) -> Array:
     center = np.array([p.center for p in recipe.parts])
     size: Array = (center + reach).max(0) - (center - reach).min(0)
     return size
-
-
-def _share_of_bed(solution: FoldSolution) -> float:
-    """How much of the bed the furniture takes in its posture, 1 where it just fits."""
-    from foldfab.folding.kinematics import size_at
-
-    options = solution.scaffold.recipe.print
-    bed = np.array(options.printer.build_volume)
-    is_open = options.posture == "open"
-    size = size_at(solution, 0.0 if is_open else 1.0, solution.scaffold.rotation.T if is_open else np.eye(3))
-    return float(min((size / bed).max(), (size[[1, 0, 2]] / bed).max()))

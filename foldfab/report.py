@@ -11,6 +11,7 @@ import numpy as np
 from foldfab.fabrication.model import Assembly
 from foldfab.folding.model import FoldSolution, Modification
 from foldfab.geometry.arrays import Array
+from foldfab.postures import Row as PostureRow
 from foldfab.validity.model import Verdict
 
 WINDOW = 1e-9
@@ -189,6 +190,20 @@ def _extent(assembly: Assembly, key: int) -> Array:
     return np.asarray(np.ptp(np.vstack(moved) @ assembly.solution.scaffold.rotation, axis=0))
 
 
+def postures_table(rows: Iterable[PostureRow]) -> str:
+    """What the slicer says of each posture, side by side."""
+    cells: list[Sequence[str]] = [("posture", "time", "filament", "support", "height", "")]
+    for row in rows:
+        if row.problem:
+            cells.append((row.posture, "-", "-", "-", "-", row.problem))
+            continue
+        notes = [f"{row.files} plates"] * (row.files > 1) + [f"props under {row.propped} parts"] * (row.propped > 0)
+        hours = f"{row.seconds / 3600:.1f} h"
+        figures = (f"{row.filament_g:.0f} g", f"{row.support_g:.1f} g", f"{row.height_mm:.0f} mm")
+        cells.append((row.posture, hours, *figures, ", ".join(notes)))
+    return "\n".join(_aligned(cells))
+
+
 def _headline(assembly: Assembly) -> str:
     recipe = assembly.solution.scaffold.recipe
     way = _vector(assembly.solution.scaffold.direction)
@@ -225,7 +240,7 @@ def _printing(assembly: Assembly) -> str:
     thickness = assembly.solution.thickness
     volume = " × ".join(f"{side:g}" for side in printer.build_volume)
     lines = [
-        f"printer {printer.name} ({volume} mm), posture {assembly.posture}, in one piece",
+        f"printer {printer.name} ({volume} mm), posture {assembly.posture}, {_pieces(assembly)}",
         f"plates are {thickness.panel:g} mm thick: use layers of {thickness.panel / LAYERS:.2g} mm or less",
         f"hinges are printed with {thickness.gap:g} mm of clearance: allow no supports in the gaps",
         *_after(assembly),
@@ -233,9 +248,19 @@ def _printing(assembly: Assembly) -> str:
     return "\n".join(["How to print it", *(f"  {line}" for line in lines)])
 
 
+def _pieces(assembly: Assembly) -> str:
+    return "in loose parts" if assembly.posture == "plate" else "in one piece"
+
+
 def _after(assembly: Assembly) -> list[str]:
     """How to treat the print once it is off the bed."""
     order = "; then ".join(", ".join(step.patches) for step in assembly.solution.steps)
+    if assembly.posture == "plate":
+        pins = "push 1.75 mm filament through each hinge, cut it 1 mm long and melt its end flat"
+        return ["give supports where the slicer wants them", pins, f"fold in this order: {order}"]
+    if assembly.posture == "edge":
+        props = [f"break the props off {', '.join(b.name for b in assembly.propped)}"] if assembly.propped else []
+        return ["it stands on edge: allow no supports", *props, f"unfold it; fold in this order: {order}"]
     if assembly.posture == "folded":
         return ["it lies flat on the bed; unfold it in the reverse of this order", f"fold in this order: {order}"]
     return ["give supports from the bed only, and loosen every hinge gently once", f"fold in this order: {order}"]

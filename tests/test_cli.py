@@ -59,7 +59,7 @@ class Pipeline(types.ModuleType):
 
     def _result(self, name: str) -> Any:
         return {
-            "load": types.SimpleNamespace(name="bench", about="A bench."),
+            "load": types.SimpleNamespace(name="bench", about="A bench.", print=types.SimpleNamespace(posture="open")),
             "alternatives": ("one", "two"),
             "fabricate": types.SimpleNamespace(findings=self.findings),
             "check": types.SimpleNamespace(rows=self.rows, ok=all(row.ok for row in self.rows)),
@@ -336,3 +336,12 @@ def test_help_is_fast_and_a_closed_pipe_is_quiet() -> None:
     closed = f"{sys.executable} -m foldfab.cli print --help | true"
     piped = subprocess.run(closed, shell=True, capture_output=True, text=True, check=True)
     assert piped.stderr == ""
+
+
+def test_auto_is_settled_before_it_is_folded(monkeypatch: pytest.MonkeyPatch) -> None:
+
+    from foldfab import postures
+
+    recipe = types.SimpleNamespace(print=types.SimpleNamespace(posture="auto"))
+    monkeypatch.setattr(postures, "settled", lambda recipe, tell: "settled")
+    assert cli._settled(recipe, cli._Progress(is_quiet=True)) == "settled"  # type: ignore[arg-type, comparison-overlap]

@@ -12,7 +12,7 @@ from foldfab.export.check_motion import check_motion
 from foldfab.export.check_slicer import check_slicer
 from foldfab.export.check_solids import check_stl, check_threemf
 from foldfab.export.check_step import check_step
-from foldfab.export.printability import Kind, Mesh, printability
+from foldfab.export.printability import Kind, Mesh, printability, side_by_side
 from foldfab.export.read_files import read_threemf
 from foldfab.export.report import Report, Row, listed
 from foldfab.export.stated import Stated, inside, read_sheet, stated
@@ -69,9 +69,9 @@ def check_files(folder: Path, facts: Stated) -> list[Row]:
 
 def check_printability(folder: Path, facts: Stated) -> list[Row]:
     """No kind of error is found in the print files, and `printability.json` counts what is found."""
-    found = printability(
-        [mesh for name in facts.print_files for mesh in _meshes(inside(folder, name))], facts.clearance
-    )
+    is_loose = facts.posture == "plate"
+    plates = [_meshes(inside(folder, name), is_loose=is_loose) for name in facts.print_files]
+    found = printability(side_by_side(plates), facts.clearance)
     told = json.loads((folder / "printability.json").read_text(encoding="utf-8"))
     counts = {kind["name"]: kind["count"] for kind in told["kinds"]}
     problems = list(found.errors)
@@ -90,8 +90,8 @@ def _agrees(kind: Kind, counts: dict[str, float | None]) -> bool:
     return abs(stated - kind.count) <= AREAS * kind.count
 
 
-def _meshes(file: Path) -> list[Mesh]:
-    one = read_threemf(file)
+def _meshes(file: Path, *, is_loose: bool) -> list[Mesh]:
+    one = read_threemf(file, is_loose=is_loose)
     return [(name, one.vertices, one.faces[first : last + 1]) for name, first, last in one.volumes]
 
 

@@ -31,12 +31,16 @@ def check_stl(folder: Path, stated: Stated) -> list[Row]:
 
 def check_threemf(folder: Path, stated: Stated) -> list[Row]:
     """Each print file is strict 3MF of one item, names its bodies, fits the bed, stands on it and keeps its gaps."""
-    prints = [read_threemf(inside(folder, name)) for name in stated.print_files]
-    solids = [body for one in prints for body in bodies_of(one)]
+    is_loose = stated.posture == "plate"
+    prints = [read_threemf(inside(folder, name), is_loose=is_loose) for name in stated.print_files]
+    plates = [bodies_of(one) for one in prints]
+    solids = [body for plate in plates for body in plate]
     problems = _print_problems(prints, stated)
+    hanging = [b for b in solids if is_loose and abs(float(b.vertices[:, 2].min())) > BED_MM]
+    problems += [f"{body.name} does not lie on the bed" for body in hanging]
     problems += [f"{body.name} is in several pieces" for body in solids if len(body.manifold.decompose()) != 1]
-    text = listed(problems) or f"{len(stated.parts)} named bodies in one mesh, no warnings, fits the bed"
-    return [Row("3mf", not problems, text), _gap(solids, stated.clearance)]
+    text = listed(problems) or f"{len(stated.parts)} named bodies in {_where(stated)}, no warnings, fits the bed"
+    return [Row("3mf", not problems, text), _gap(plates, stated.clearance)]
 
 
 def same_volume(found: float, wanted: float) -> bool:
@@ -94,10 +98,15 @@ def bodies_of(one: PrintFile) -> list[Solid]:
     return bodies
 
 
-def _gap(solids: list[Solid], clearance: float) -> Row:
+def _where(stated: Stated) -> str:
+    count = len(stated.print_files)
+    return "one mesh" if stated.posture != "plate" else f"{count} plate{'s' * (count != 1)}"
+
+
+def _gap(plates: list[list[Solid]], clearance: float) -> Row:
     """O(pairs of near boxes)."""
     least, where = np.inf, ""
-    for i, j in close_pairs([body.vertices for body in solids], 2 * clearance):
+    for solids, i, j in ((s, *pair) for s in plates for pair in close_pairs([b.vertices for b in s], 2 * clearance)):
         a, b = solids[i], solids[j]
         overlap = (a.manifold ^ b.manifold).volume()
         gap = 0.0 if overlap > OVERLAP_MM3 else a.manifold.min_gap(b.manifold, 2 * clearance)

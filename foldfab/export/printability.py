@@ -9,6 +9,8 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
+import numpy as np
+
 from foldfab.export.faults import Faults, faults
 from foldfab.export.hanging import floating, overhang_areas
 from foldfab.export.solid import Solid, close_pairs, solid
@@ -21,6 +23,8 @@ Mesh = tuple[str, Array, Indices]
 
 CLOSED_MM = 2 * CLOSING_RADIUS_MM
 """Gaps narrower than this are closed by slicers."""
+APART_MM = 100.0
+"""Between plates."""
 FAR_GAPS = 2.0
 """Bodies that are further apart than this many clearances are no neighbours."""
 
@@ -69,6 +73,13 @@ def printability(meshes: Sequence[Mesh], clearance: float) -> Printability:
     return Printability(
         (*kinds, _walls(bodies), _gaps(bodies, clearance), *_hanging(bodies, clearance), _slivers(found))
     )
+
+
+def side_by_side(plates: Sequence[Sequence[Mesh]]) -> list[Mesh]:
+    """The bodies of several plates, far enough from those of other plates to have nothing to do with them."""
+    corners = [vertices[:, 0] for plate in plates for _, vertices, _ in plate]
+    step = np.array([max(map(np.max, corners)) - min(map(np.min, corners)) + APART_MM, 0.0, 0.0])
+    return [(name, vertices + k * step, faces) for k, plate in enumerate(plates) for name, vertices, faces in plate]
 
 
 def as_json(found: Printability, facts: dict[str, object]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import zipfile
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -48,8 +49,8 @@ def read_stl(path: Path) -> tuple[Array, Indices]:
     return vertices, index.reshape(-1, 3).astype(np.int64)
 
 
-def read_threemf(path: Path) -> PrintFile:
-    """A print file through lib3mf's strict reader.
+def read_threemf(path: Path, *, is_loose: bool = False) -> PrintFile:
+    """A print file through lib3mf's strict reader; where it `is_loose`, an object is a body.
 
     Raises:
         ValueError: it is refused, or not one item of one mesh in millimetres with its bodies named.
@@ -63,17 +64,33 @@ def read_threemf(path: Path) -> PrintFile:
     reader.ReadFromFile(str(path))
     if model.GetUnit() != lib3mf.ModelUnit.MilliMeter:
         raise ValueError(f"{path.name} is not in millimetres")
-    items, count = model.GetBuildItems(), model.GetMeshObjects().Count()
-    if (items.Count(), count) != (1, 1):
-        raise ValueError(f"{path.name} has {items.Count()} items of {count} meshes; slicers would take it apart")
-    items.MoveNext()
-    item = items.GetCurrent()
-    mesh = model.GetMeshObjectByID(item.GetObjectResourceID())
-    vertices = np.array([tuple(vertex.Coordinates) for vertex in mesh.GetVertices()], dtype=np.float64)
-    faces = np.array([tuple(triangle.Indices) for triangle in mesh.GetTriangleIndices()], dtype=np.int64)
-    volumes = _volumes(path, len(faces))
-    sound = bool(mesh.IsManifoldAndOriented())
-    return PrintFile(_placed(item, vertices), faces, volumes, int(reader.GetWarningCount()), sound)
+    meshes = list(_meshes(model))
+    if not is_loose and (len(meshes), model.GetMeshObjects().Count()) != (1, 1):
+        count = model.GetMeshObjects().Count()
+        raise ValueError(f"{path.name} has {len(meshes)} items of {count} meshes; slicers would take it apart")
+    if not meshes:
+        raise ValueError(f"{path.name} is empty")
+    starts = np.cumsum([0, *(len(vertices) for _, vertices, _, _ in meshes)])
+    faces = np.vstack([f + start for (_, _, f, _), start in zip(meshes, starts, strict=False)])
+    volumes = _objects(meshes) if is_loose else _volumes(path, len(faces))
+    vertices, is_sound = np.vstack([v for _, v, _, _ in meshes]), all(sound for _, _, _, sound in meshes)
+    return PrintFile(vertices, faces, volumes, int(reader.GetWarningCount()), is_sound)
+
+
+def _meshes(model: Any) -> Iterator[tuple[str, Array, Indices, bool]]:
+    """Name, vertices, faces and soundness of each build item."""
+    items = model.GetBuildItems()
+    while items.MoveNext():
+        item = items.GetCurrent()
+        mesh = model.GetMeshObjectByID(item.GetObjectResourceID())
+        vertices = np.array([tuple(vertex.Coordinates) for vertex in mesh.GetVertices()], dtype=np.float64)
+        faces = np.array([tuple(triangle.Indices) for triangle in mesh.GetTriangleIndices()], dtype=np.int64)
+        yield mesh.GetName(), _placed(item, vertices), faces, bool(mesh.IsManifoldAndOriented())
+
+
+def _objects(meshes: list[tuple[str, Array, Indices, bool]]) -> tuple[tuple[str, int, int], ...]:
+    ends = np.cumsum([len(faces) for _, _, faces, _ in meshes]).tolist()
+    return tuple((m[0], end - len(m[2]), end - 1) for m, end in zip(meshes, ends, strict=True))
 
 
 def _placed(item: Any, vertices: Array) -> Array:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from foldfab.export.bed import print_files
 from foldfab.export.frames import moved, sheet_poses, to_sheet
 from foldfab.export.provenance import provenance
 from foldfab.export.shell import Shell
@@ -82,7 +83,7 @@ def _print(assembly: Assembly) -> dict[str, Any]:
         "clearance_mm": _length(thickness.gap),
         "clearance_from": scaffold.recipe.print.clearance_from,
         "printer": {"name": printer.name, "build_volume_mm": _lengths(np.array(printer.build_volume))},
-        "print_files": [f"{scaffold.recipe.name}.3mf"],
+        "print_files": list(print_files(assembly)),
     }
 
 

@@ -23,8 +23,22 @@ SETTINGS = {"elefant_foot_compensation": f"{ELEPHANT_FOOT_MM:g}", "slice_closing
 """Of the object, for all of these programs: a first layer that is squeezed, or a wide closing radius, welds hinges."""
 
 
-def prusa_config(title: str, shells: tuple[Shell, ...], object_id: int) -> str:
-    """The names of the bodies, which follow each other in the mesh, and the object's settings."""
+Object = tuple[int, str, tuple[Shell, ...]]
+"""Id, name and bodies."""
+
+
+def prusa_config(objects: list[Object]) -> str:
+    """The names of the bodies, which follow each other in the mesh of their object, and the objects' settings."""
+    return f"{XML}<config>\n{''.join(map(_prusa_object, objects))}</config>\n"
+
+
+def bambu_config(objects: list[Object]) -> str:
+    """The objects of one part each, with their settings."""
+    return f"{XML}<config>\n{''.join(map(_bambu_object, objects))}</config>\n"
+
+
+def _prusa_object(one: Object) -> str:
+    object_id, title, shells = one
     rows = [_typed("object", key, value) for key, value in {"name": title, **SETTINGS}.items()]
     start = 0
     for shell in shells:
@@ -33,14 +47,14 @@ def prusa_config(title: str, shells: tuple[Shell, ...], object_id: int) -> str:
             f" {_typed('volume', 'name', shell.name)} {_typed('volume', 'volume_type', 'ModelPart')}  </volume>\n"
         )
         start += len(shell.faces)
-    return f'{XML}<config>\n <object id="{object_id}" instances_count="1">\n{"".join(rows)} </object>\n</config>\n'
+    return f' <object id="{object_id}" instances_count="1">\n{"".join(rows)} </object>\n'
 
 
-def bambu_config(title: str, object_id: int) -> str:
-    """The object of one part, with its settings."""
+def _bambu_object(one: Object) -> str:
+    object_id, title, _ = one
     rows = "".join(f"  {_plain(key, value)}" for key, value in {"name": title, **SETTINGS}.items())
     part = f'  <part id="{object_id}" subtype="normal_part">\n   {_plain("name", title)}  </part>\n'
-    return f'{XML}<config>\n <object id="{object_id}">\n{rows}{part} </object>\n</config>\n'
+    return f' <object id="{object_id}">\n{rows}{part} </object>\n'
 
 
 def xml_attribute(text: str) -> str:

@@ -60,6 +60,7 @@ class Stated:
     name: str
     recipe_sha256: str
     """Of `recipe.json`."""
+    posture: str
     direction: Array
     """(3,) unit vector."""
     clearance: float
@@ -112,6 +113,7 @@ def stated(sheet: dict[str, Any]) -> Stated:
     return Stated(
         name=_text(sheet["name"]),
         recipe_sha256=_text(sheet["provenance"]["recipe_sha256"]),
+        posture=_text(sheet["posture"]),
         direction=direction,
         clearance=_number(sheet["clearance_mm"]),
         bed=frozen(sheet["printer"]["build_volume_mm"], 3),

@@ -1,4 +1,4 @@
-"""The print file: a 3MF of one build item, one object, one mesh, its bodies as disjoint shells.
+"""The print file: a 3MF of one build item, one object, one mesh, its bodies as disjoint shells; loose parts apart.
 
 Slicers take several objects apart and drop each to the bed, so the bodies' names and ranges stand beside the mesh, in
 the records that slicers keep of their own. A thumbnail, and what the print was made from, lie in the file too.
@@ -14,7 +14,7 @@ import numpy as np
 
 from foldfab.export.colours import COLOURS, NAMES, materials
 from foldfab.export.shell import Shell
-from foldfab.export.slicer_settings import BAMBU, PRUSA, XML, bambu_config, prusa_config, xml_attribute
+from foldfab.export.slicer_settings import BAMBU, PRUSA, XML, Object, bambu_config, prusa_config, xml_attribute
 from foldfab.export.version import foldfab_version
 
 CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
@@ -27,18 +27,21 @@ FIXED_TIME = (1980, 1, 1, 0, 0, 0)
 
 
 def threemf_bytes(
-    title: str, shells: tuple[Shell, ...], *, metadata: Mapping[str, str] | None = None, thumbnail: bytes = b""
-) -> bytes:
-    """A 3MF of the shells as they lie on the bed, millimetres.
+    title: str, shells: tuple[Shell, ...], *, is_loose: bool = False, metadata: Mapping[str, str] | None = None,
+    thumbnail: bytes = b"",
+) -> bytes:  # fmt: skip
+    """A 3MF of the shells as they lie on the bed, millimetres: one object, or an object each where they are loose.
 
     `metadata` stands in the model by name, those of our own as `foldfab:…`; `thumbnail` is a PNG.
     """
+    named = [(s.name, (s,)) for s in shells] if is_loose else [(title, shells)]
+    objects = [(number, *one) for number, one in zip(_numbers(len(named)), named, strict=True)]
     texts = {
         "[Content_Types].xml": _content_types(),
         "_rels/.rels": _relationships(bool(thumbnail)),
-        "3D/3dmodel.model": _model(title, shells, metadata or {}),
-        PRUSA: prusa_config(title, shells, OBJECT_ID),
-        BAMBU: bambu_config(title, OBJECT_ID),
+        "3D/3dmodel.model": _model(title, objects, metadata or {}),
+        PRUSA: prusa_config(objects),
+        BAMBU: bambu_config(objects),
     }
     files = {name: text.encode("utf-8") for name, text in texts.items()} | ({THUMBNAIL: thumbnail} if thumbnail else {})
     buffer = io.BytesIO()
@@ -74,22 +77,35 @@ def _relationships(has_thumbnail: bool) -> str:
     return f'{XML}<Relationships xmlns="{PACKAGE}/relationships">\n{rows}</Relationships>\n'
 
 
-def _model(title: str, shells: tuple[Shell, ...], metadata: Mapping[str, str]) -> str:
+def _model(title: str, objects: list[Object], metadata: Mapping[str, str]) -> str:
     notes = {"Title": title, "Application": f"foldfab {foldfab_version()}", **metadata}
     told = "".join(f' <metadata name="{name}">{_xml_text(text)}</metadata>\n' for name, text in notes.items())
     colours = "".join(
         f'   <base name="{name}" displaycolor="#{r:02X}{g:02X}{b:02X}"/>\n'
         for name, (r, g, b) in zip(NAMES, COLOURS, strict=True)
     )
+    items = "".join(f'  <item objectid="{number}"/>\n' for number, _, _ in objects)
     return (
         f'{XML}<model unit="millimeter" xml:lang="en-US" xmlns="{CORE}"'
         f' xmlns:slic3rpe="http://schemas.slic3r.org/3mf/2017/06" xmlns:foldfab="{OURS}">\n'
         ' <metadata name="slic3rpe:Version3mf">1</metadata>\n'
         f"{told}"
         f' <resources>\n  <basematerials id="{MATERIALS_ID}">\n{colours}  </basematerials>\n'
-        f'  <object id="{OBJECT_ID}" type="model" name={xml_attribute(title)} pid="{MATERIALS_ID}" pindex="0">\n'
-        f"   <mesh>\n{_vertices(shells)}{_triangles(shells)}   </mesh>\n  </object>\n </resources>\n"
-        f' <build>\n  <item objectid="{OBJECT_ID}"/>\n </build>\n</model>\n'
+        f"{''.join(map(_object, objects))} </resources>\n"
+        f" <build>\n{items} </build>\n</model>\n"
+    )
+
+
+def _numbers(count: int) -> list[int]:
+    """The ids of objects, which share their numbers with the materials."""
+    return [OBJECT_ID, *range(MATERIALS_ID + 1, MATERIALS_ID + count)]
+
+
+def _object(one: Object) -> str:
+    number, name, shells = one
+    return (
+        f'  <object id="{number}" type="model" name={xml_attribute(name)} pid="{MATERIALS_ID}" pindex="0">\n'
+        f"   <mesh>\n{_vertices(shells)}{_triangles(shells)}   </mesh>\n  </object>\n"
     )
 
 

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from foldfab.errors import FabricationError, MissingLibraryError
 from foldfab.export.animation import glb_bytes
-from foldfab.export.bed import on_bed
+from foldfab.export.bed import print_files
 from foldfab.export.mesh_files import file_stems, stl_bytes
 from foldfab.export.preview import preview_png
-from foldfab.export.printability import Printability, as_json, as_text, printability
+from foldfab.export.printability import Printability, as_json, as_text, printability, side_by_side
 from foldfab.export.provenance import metadata, recipe_bytes
 from foldfab.export.sheet import sheet_json
 from foldfab.export.shell import Shell, sheet_shells
@@ -19,6 +19,7 @@ from foldfab.export.swap import replace_folder
 from foldfab.export.threemf import threemf_bytes
 from foldfab.export.thumbnail import thumbnail_png
 from foldfab.fabrication.model import Assembly
+from foldfab.fabrication.posture import needs_pins
 
 
 def write(assembly: Assembly, folder: Path, *, step: bool = False) -> list[Path]:
@@ -40,13 +41,13 @@ def contents(assembly: Assembly, *, step: bool = False) -> dict[str, bytes]:
         FabricationError: slicers would stumble over the print file's meshes.
     """
     recipe = assembly.solution.scaffold.recipe
-    shells, printed = sheet_shells(assembly), on_bed(assembly)
+    shells, printed = sheet_shells(assembly), print_files(assembly)
     found = _printable(assembly, printed)
     stems = file_stems(shell.name for shell in shells)
     stl_paths = {name: f"stl/{stem}.stl" for name, stem in stems.items()}
     return {
         **{stl_paths[shell.name]: stl_bytes(shell) for shell in shells},
-        f"{recipe.name}.3mf": _print_file(assembly, printed),
+        **{name: _print_file(assembly, name, plate) for name, plate in printed.items()},
         f"{recipe.name}.glb": glb_bytes(assembly, shells),
         "sheet.json": sheet_json(assembly, shells, stl_paths).encode(),
         **({f"{recipe.name}.step": step_bytes(assembly)} if step else {}),
@@ -57,17 +58,18 @@ def contents(assembly: Assembly, *, step: bool = False) -> dict[str, bytes]:
     }
 
 
-def _printable(assembly: Assembly, printed: tuple[Shell, ...]) -> Printability:
-    meshes = [(shell.name, shell.vertices, shell.faces) for shell in printed]
-    found = printability(meshes, assembly.solution.thickness.gap)
+def _printable(assembly: Assembly, printed: Mapping[str, tuple[Shell, ...]]) -> Printability:
+    plates = [[(shell.name, shell.vertices, shell.faces) for shell in plate] for plate in printed.values()]
+    found = printability(side_by_side(plates), assembly.solution.thickness.gap)
     if found.errors:
         raise FabricationError("this would not print:\n  " + "\n  ".join(found.errors))
     return found
 
 
-def _print_file(assembly: Assembly, printed: tuple[Shell, ...]) -> bytes:
-    name = assembly.solution.scaffold.recipe.name
-    return threemf_bytes(name, printed, metadata=metadata(assembly), thumbnail=_drawn(lambda: thumbnail_png(printed)))
+def _print_file(assembly: Assembly, name: str, plate: tuple[Shell, ...]) -> bytes:
+    picture = _drawn(lambda: thumbnail_png(plate))
+    is_loose = needs_pins(assembly.posture)
+    return threemf_bytes(Path(name).stem, plate, is_loose=is_loose, metadata=metadata(assembly), thumbnail=picture)
 
 
 def _drawn(draw: Callable[[], bytes]) -> bytes:

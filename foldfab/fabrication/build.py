@@ -14,7 +14,10 @@ from foldfab.fabrication.inspect import inspect
 from foldfab.fabrication.model import Assembly, Body, Finding, Joint
 from foldfab.fabrication.panels import panels
 from foldfab.fabrication.plates import axis_of, plate
+from foldfab.fabrication.posture import edge_up, needs_pins
 from foldfab.fabrication.printed import printed
+from foldfab.fabrication.props import planed, propped
+from foldfab.fabrication.relief import relieved
 from foldfab.fabrication.shapes import Shape
 from foldfab.fabrication.snaps import snap_findings
 from foldfab.fabrication.solids import Solid
@@ -29,6 +32,8 @@ from foldfab.recipe.model import Posture
 Progress = Callable[[str, float], None]
 """Called with what is being done and the share of it that is done."""
 
+PLANED = 0.5
+"""What may be taken off one end of a part for it to stand flush with others on edge, as a share of K."""
 HINGE_SKIN = 0.05
 """Faces this close to a knuckle's radius are shown as hinge, mm."""
 
@@ -42,6 +47,8 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
     tell = progress or (lambda what, share: None)
     options = solution.scaffold.recipe.print
     problem = hinge_problem(options.hinge, options.thickness, posture)
+    if needs_pins(posture) and options.hinge == "cone":
+        problem = "hinges pinned by cones print in place only; load the recipe with the posture plate, or another hinge"
     if problem:
         raise FabricationError(problem)
     tell("solids", 0.0)
@@ -50,14 +57,23 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
     findings += snap_findings(solution)
     times = key_times(solution)
     poses = configuration(solution, times)
+    up = edge_up(solution, made, poses) if posture == "edge" else None
+    if up is not None:
+        made, taken = planed(made, poses, up, PLANED * solution.thickness.panel)
+        findings += _planed(taken)
+        made = {name: solids.tidied(body) for name, body in relieved(solution, made, up).items()}
     found = tuple(_joints(solution))
+    findings += [Finding("posture", options.why)] if options.why else []
     findings += [Finding("note", note) for note in solution.notes]
-    draft = Assembly(solution, (), found, times, {n: poses[n] for n in made}, posture, (), described)
+    draft = Assembly(solution, (), found, times, {n: poses[n] for n in made}, posture, (), described, up)
     tell("stops", 0.0)
     held = stopped(draft, made)
     made = held.made
     bodies = tuple(_body(solution, name, made[name]) for name in sorted(made))
     draft = replace(draft, bodies=bodies, joints=held.joints, shapes=held.shapes)
+    if up is not None:
+        props = propped(made, poses, up, solution.thickness.gap)
+        draft = replace(draft, propped=tuple(_body(solution, name, props[name]) for name in sorted(props)))
     findings += inspect(draft, made, lambda share: tell("inspection", share), held.gives)
     fatal = [f for f in findings if f.is_fatal]
     if fatal:
@@ -86,6 +102,15 @@ def _shapes(solution: FoldSolution) -> tuple[dict[str, Shape], list[Finding]]:
 def _solids(described: dict[str, Shape]) -> dict[str, Solid]:
     known: dict[Shape, Solid] = {}
     return {name: solids.tidied(printed(shape, known)) for name, shape in described.items()}
+
+
+def _planed(taken: dict[str, float]) -> list[Finding]:
+    if not taken:
+        return []
+    told = (
+        f"{', '.join(sorted(taken))} lose up to {max(taken.values()):.2f} mm at one end, so that more stands on the bed"
+    )
+    return [Finding("planed", told)]
 
 
 def _body(solution: FoldSolution, name: str, solid: Solid) -> Body:

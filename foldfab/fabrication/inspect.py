@@ -14,7 +14,9 @@ from types import MappingProxyType
 import numpy as np
 
 from foldfab.fabrication import solids
+from foldfab.fabrication.lying import lying
 from foldfab.fabrication.model import Assembly, Finding
+from foldfab.fabrication.posture import needs_pins, printed_pose, printed_turn
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.turning import PAST, meets, stops_at, turn
 from foldfab.folding.kinematics import configuration
@@ -64,12 +66,6 @@ def inspect(
     return findings
 
 
-def printed_pose(assembly: Assembly, name: str) -> Array:
-    """(4, 4) where a body stands in the posture it is printed in, canonical frame."""
-    pose: Array = assembly.poses[name][0 if assembly.posture == "open" else -1]
-    return pose
-
-
 def extent(assembly: Assembly, *, folded: bool) -> Array:
     """(3,) size of the axis-aligned bounds of all bodies in the recipe's axes, mm."""
     turn = assembly.solution.scaffold.rotation.T
@@ -78,9 +74,7 @@ def extent(assembly: Assembly, *, folded: bool) -> Array:
 
 def printed_extent(assembly: Assembly) -> Array:
     """(3,) size on the bed in the posture it is printed in, mm."""
-    if assembly.posture == "open":
-        return extent(assembly, folded=False)
-    return _spread(assembly, -1, np.eye(3))
+    return _spread(assembly, 0 if assembly.posture == "open" else -1, printed_turn(assembly))
 
 
 def _spread(assembly: Assembly, key: int, turn: Array) -> Array:
@@ -107,17 +101,26 @@ def _soundness(made: dict[str, Solid]) -> list[Finding]:
 
 
 def _fits(assembly: Assembly) -> list[Finding]:
-    size, printer = printed_extent(assembly), assembly.solution.scaffold.recipe.print.printer
+    printer = assembly.solution.scaffold.recipe.print.printer
     bed = np.array(printer.build_volume)
-    if (size <= bed).all() or (size[[1, 0, 2]] <= bed).all():
+    too_large = [(n, s) for n, s in _sizes(assembly) if not ((s <= bed).all() or (s[[1, 0, 2]] <= bed).all())]
+    if not too_large:
         return []
+    name, size = max(too_large, key=lambda row: float((row[1] / bed).max()))
     told = " x ".join(f"{v:.1f}" for v in size)
     share = min(float((bed / size).min()), 0.999)
     text = (
-        f"{assembly.posture} it is {told} mm and does not fit the {printer.name}; "
+        f"{assembly.posture} {name} is {told} mm and does not fit the {printer.name}; "
         f"print at scale {assembly.solution.scaffold.scale * share:.4g} or smaller"
     )
     return [Finding("bed", text, is_fatal=True)]
+
+
+def _sizes(assembly: Assembly) -> list[tuple[str, Array]]:
+    """(3,) mm of each thing that has to fit the bed, by name."""
+    if needs_pins(assembly.posture):
+        return [(body.name, np.ptp(lying(body), axis=0)) for body in assembly.bodies]
+    return [("it", printed_extent(assembly))]
 
 
 def _gaps(assembly: Assembly, made: dict[str, Solid]) -> list[Finding]:

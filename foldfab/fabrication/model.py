@@ -105,8 +105,15 @@ class Assembly:
     findings: tuple[Finding, ...]
     shapes: dict[str, Shape] = field(default_factory=dict)
     """By body, what it is made of, open posture, canonical frame, mm."""
+    up: Array | None = None
+    """(3,) the hinge direction that points up where it stands on edge, canonical frame; None in other postures."""
+
+    propped: tuple[Body, ...] = ()
+    """The bodies that are printed with a prop to be broken off, with it; sorted by name."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "times", frozen(self.times, -1))
+        if self.up is not None:
+            object.__setattr__(self, "up", frozen(self.up, 3))
         poses = {name: frozen(pose, -1, 4, 4) for name, pose in self.poses.items()}
         object.__setattr__(self, "poses", poses)

@@ -11,13 +11,16 @@ from collections.abc import Iterable
 from typing import TypeAlias
 
 import numpy as np
-from manifold3d import CrossSection, Error, Manifold, Mesh, OpType
+from manifold3d import CrossSection, Error, JoinType, Manifold, Mesh, OpType
 
 from foldfab.errors import FabricationError
 from foldfab.geometry.arrays import Array, Indices
 
 Solid: TypeAlias = Manifold
 """A closed solid of the kernel."""
+
+Outline: TypeAlias = CrossSection
+"""A flat outline of the kernel."""
 
 SIDES = 32
 """Sides of the polygon that stands for a circle."""
@@ -46,7 +49,7 @@ def rod(radius: float, start: float, end: float, x: float, z: float, *, is_hole:
 
 
 def cone(radius: float, base: float, tip: float, x: float, z: float, *, is_hole: bool = False) -> Solid:
-    """A 45° cone along y around (x, z) with its mouth at `base`, pointing to `tip`."""
+    """A cone along y around (x, z) with its mouth at `base`, pointing to `tip`: of 45° where it is as high as wide."""
     size = radius / np.cos(np.pi / SIDES) if is_hole else radius
     shape = Manifold.cylinder(abs(tip - base), size, 0.0, SIDES)
     sign = 1.0 if tip > base else -1.0
@@ -63,6 +66,21 @@ def prism(outline: Iterable[tuple[float, float]], start: float, end: float) -> S
     flat = np.stack([x, -z], axis=1)[:: 1 if is_clockwise else -1]
     turn = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, start], [0.0, -1.0, 0.0, 0.0]])
     return Manifold.extrude(CrossSection([flat]), end - start).transform(turn)
+
+
+def hull_of(points: Array) -> Solid:
+    """The convex hull of points (n, 3)."""
+    return checked(Manifold.hull_points(np.asarray(points, dtype=np.float64).tolist()))
+
+
+def grown(outline: Outline, margin: float) -> Outline:
+    """The outline, `margin` mm wider on all sides."""
+    return outline.offset(margin, JoinType.Miter, 2.0)
+
+
+def rectangle(middle: Array, sides: Array) -> Outline:
+    """A rectangle around `middle` (2,) with `sides` (2,), mm."""
+    return CrossSection.square(tuple(sides.tolist()), center=True).translate(tuple(middle.tolist()))
 
 
 def union(parts: list[Solid]) -> Solid:

@@ -38,7 +38,7 @@ def stopped(assembly: Assembly, made: dict[str, Solid]) -> Stopped:
     is_latched = assembly.solution.scaffold.recipe.print.latch
     for chain, hinge, name in _hinges(assembly):
         ways = (
-            (False, stops(assembly.solution, chain, hinge, in_open=assembly.posture == "open")),
+            (False, stops(assembly.solution, chain, hinge, in_open=assembly.posture in ("open", "plate"))),
             (True, rests(assembly.solution, chain, hinge)),
         )
         for is_folded, candidates in ways:

@@ -17,6 +17,7 @@ from foldfab.fabrication.inspect import CLASH, GAP_SHARE, STILL, instants
 from foldfab.fabrication.latches import tried
 from foldfab.fabrication.model import Assembly, Latch
 from foldfab.fabrication.plates import ROOT_SHARE, axis_of
+from foldfab.fabrication.posture import needs_pins, printed_turn
 from foldfab.fabrication.printed import printed
 from foldfab.fabrication.shapes import cut, union
 from foldfab.fabrication.solids import Solid
@@ -36,7 +37,8 @@ class Trial:
         self.assembly, self.made, self.shapes = assembly, made, dict(assembly.shapes)
         self.poses = configuration(assembly.solution, instants(assembly))
         self._bounds = {name: self._along(name, solid) for name, solid in made.items()}
-        self._is_open = assembly.posture == "open"
+        self._is_open = assembly.posture in ("open", "plate")
+        self._turn = printed_turn(assembly)
         corners = [self._printed(name, solid) for name, solid in made.items()]
         self._extent = np.min([c[0] for c in corners], axis=0), np.max([c[1] for c in corners], axis=0)
         self._feet = list(_feet(assembly))
@@ -132,6 +134,8 @@ class Trial:
 
     def _fits(self, stop: Stop) -> bool:
         """Whether the print, which may fit its bed just so, still fits it."""
+        if needs_pins(self.assembly.posture):
+            return True
         bed = np.array(self.assembly.solution.scaffold.recipe.print.printer.build_volume)
         low, high = self._printed(stop.body, printed(stop.added))
         low, high = np.minimum(low, self._extent[0]), np.maximum(high, self._extent[1])
@@ -140,9 +144,8 @@ class Trial:
 
     def _printed(self, name: str, solid: Solid) -> tuple[Array, Array]:
         """Corners (3,) of a piece of a body as it stands on the bed."""
-        key, turn_ = (0, self.assembly.solution.scaffold.rotation.T) if self._is_open else (-1, np.eye(3))
-        pose = self.poses[name][key]
-        points = (solids.mesh(solid)[0] @ pose[:3, :3].T + pose[:3, 3]) @ turn_
+        pose = self.poses[name][0 if self._is_open else -1]
+        points = (solids.mesh(solid)[0] @ pose[:3, :3].T + pose[:3, 3]) @ self._turn.T
         return points.min(0), points.max(0)
 
     def _is_apart(self, body: str, added: Solid, name: str, other: Solid, reach: tuple[Array, Array]) -> bool:

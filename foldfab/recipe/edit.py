@@ -56,10 +56,9 @@ def override(
         raise TypeError(f"there is no option {sorted(unknown)}")
     way = {} if direction is None else {"direction": _vector(direction)}
     wrong = _check(FoldForm, fold)
-    problems = (
-        _check(_DirectionForm, way) + wrong + _check(PrintForm, _with_own(recipe, made)) + _check_printer(printer)
-    )
-    problems += _check_rigid(recipe, rigid) + _check_patterns(recipe, {} if wrong else fold, rigid)
+    problems = _check(_DirectionForm, way) + wrong + _check(PrintForm, _with_own(recipe, made))
+    problems += [*_check_printer(printer), *_check_rigid(recipe, rigid)]
+    problems += _check_patterns(recipe, {} if wrong else fold, rigid)
     if problems:
         raise RecipeError(SOURCE, tuple(problems))
     parts = tuple(replace(part, hingeable=False) if part.name in rigid else part for part in recipe.parts)

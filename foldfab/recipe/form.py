@@ -25,7 +25,16 @@ from pydantic_core import PydanticCustomError
 
 from foldfab.recipe.clearance import LEAST, MOST
 from foldfab.recipe.hinges import HingeKind, hinge_problem
-from foldfab.recipe.model import Collisions, FoldOptions, Material, Mechanism, Ordering, Pattern, Posture, PrintOptions
+from foldfab.recipe.model import (
+    Collisions,
+    FoldOptions,
+    Material,
+    Mechanism,
+    Ordering,
+    Pattern,
+    PostureWish,
+    PrintOptions,
+)
 from foldfab.recipe.model import Side as FoldSide
 from foldfab.recipe.names import folder_name_problem, has_control_characters, part_name_problem
 from foldfab.recipe.patterns import hinges_problem, is_covered, pattern_problem, rigid_problem, window_problem
@@ -292,7 +301,10 @@ class PrintForm(Form):
     nozzle: float = Field(default=_PRINT.nozzle, ge=0.1, le=1.5, description="Diameter of the nozzle, mm.")
     layer: float = Field(default=_PRINT.layer, ge=0.03, le=1, description="Height of a layer, mm.")
     material: Material = Field(default=_PRINT.material, description="What it is printed of.")
-    posture: Posture = Field(default=_PRINT.posture, description="Whether it is printed open or folded.")
+    posture: PostureWish = Field(
+        default=_PRINT.posture,
+        description="Open; folded flat; on edge, hinge axes vertical; in loose parts on plates; or what is best.",
+    )
     hinge: Annotated[HingeKind, AfterValidator(_makeable)] = Field(
         default=_PRINT.hinge, description="How hinges are pinned together."
     )

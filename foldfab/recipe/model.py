@@ -8,7 +8,9 @@ from typing import Literal
 from foldfab.geometry.arrays import Array, frozen
 from foldfab.recipe.hinges import HingeKind
 
-Posture = Literal["open", "folded"]
+Posture = Literal["open", "folded", "edge", "plate"]
+PostureWish = Literal["open", "folded", "edge", "plate", "auto"]
+"""A posture, or whichever is best."""
 Ordering = Literal["greedy", "optimal"]
 Collisions = Literal["swept", "regions"]
 Mechanism = Literal["in-place", "slanted", "deleted"]
@@ -130,7 +132,9 @@ class PrintOptions:
     layer: float = 0.2
     """Height of a layer, mm."""
     material: Material = "pla"
-    posture: Posture = "open"
+    posture: PostureWish = "open"
+    why: str = ""
+    """Why it is this posture, where it was chosen for the maker."""
     hinge: HingeKind = "cone"
     """How the knuckles of a hinge are pinned together."""
     latch: bool = False

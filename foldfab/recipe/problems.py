@@ -81,7 +81,7 @@ EXPECTED = MappingProxyType(
         "nozzle": "a number of millimetres from 0.1 to 1.5",
         "layer": "a number of millimetres from 0.03 to 1",
         "material": '"pla", "petg", "abs" or "nylon"',
-        "posture": '"open" or "folded"',
+        "posture": 'one of "open", "folded", "edge", "plate", "auto"',
         "hinge": '"cone", "filament", "screw-m2", "screw-m3" or "clip"',
         "latch": "true or false",
         "scale": '"fit" or a number from 0.00001 to 1000, such as 0.2',

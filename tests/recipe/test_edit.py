@@ -71,7 +71,7 @@ def test_back_to_fit_and_auto() -> None:
         ({"time_limit": "soon"}, "--time-limit", "'soon'"),
         ({"thickness": "0"}, "--thickness", "from 2 to 20"),
         ({"clearance": "5"}, "--clearance", "0.15 to 1"),
-        ({"posture": "edge"}, "--posture", "folded"),
+        ({"posture": "sideways"}, "--posture", "folded"),
         ({"printer": "mk9"}, "--printer", "prusa-mk4"),
         ({"printer": "1x1x1"}, "--printer", "sides"),
         ({"scale": "1:0"}, "--scale", "fit"),

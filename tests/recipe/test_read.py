@@ -146,7 +146,7 @@ BROKEN = [
     (changed("fold", "thickness", 4), "fold.thickness", "belongs in print"),
     (changed("print", "thickness", 0.5), "print.thickness", "from 2 to 20"),
     (changed("print", "clearance", 0.01), "print.clearance", "0.15 to 1"),
-    (changed("print", "posture", "edge"), "print.posture", "folded"),
+    (changed("print", "posture", "sideways"), "print.posture", "folded"),
     (changed("print", "scale", "big"), "print.scale", "fit"),
     (changed("print", "scale", 0), "print.scale", "number"),
     (changed("print", "printer", "mk9"), "print.printer", "prusa-mk4"),

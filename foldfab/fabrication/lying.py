@@ -1,0 +1,34 @@
+"""Each part flat on the bed for itself: its plate level, the side down that leaves least below it to support."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from foldfab.fabrication.model import Body
+from foldfab.geometry.arrays import Array
+from foldfab.geometry.rotation import upright
+
+FLAT = 0.766
+"""Faces that look down more steeply than this (sine of 50°) want support."""
+
+
+def lying(body: Body) -> Array:
+    """(n, 3) its vertices as it lies, with the lowest at z = 0, mm."""
+    level = upright(-body.normal)
+    over = level * np.array([[1.0], [-1.0], [-1.0]])
+    ways = [_grounded(body.vertices @ turn.T) for turn in (level, over)]
+    least: Array = min(ways, key=lambda points: round(to_support(points, body), 1))
+    return least
+
+
+def to_support(points: Array, body: Body) -> float:
+    """About how much lies below what hangs over, mm³, with the vertices of a body at (n, 3) `points`."""
+    corners = points[body.faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
+    areas = np.linalg.norm(normals, axis=1)
+    hangs = normals[:, 2] < -FLAT * areas
+    return float(-(normals[hangs, 2] * corners[hangs][:, :, 2].mean(axis=1)).sum())
+
+
+def _grounded(points: Array) -> Array:
+    return np.asarray(points - [0.0, 0.0, float(points[:, 2].min())])

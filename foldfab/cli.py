@@ -15,34 +15,12 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from foldfab.arguments import SWITCHES, Run, joined, option_names, parser
+
 if TYPE_CHECKING:
     from foldfab.recipe.model import Recipe
 
-MOST_ALTERNATIVES = 20
 USAGE, BUG, INTERRUPTED, UNHEARD = 2, 70, 130, 141
-
-_OPTIONS: tuple[tuple[str, str, str], ...] = (
-    ("--direction", "D", 'folding direction: an axis such as -z, a vector such as 0,0,-1, or "auto"'),
-    ("--posture", "P", "print it open, folded, edge (folded, hinge axes vertical), plate (loose parts), or auto"),
-    ("--printer", "NAME", "a known printer such as prusa-mk4, or a build volume such as 200x200x180"),
-    ("--scale", "S", 'print size over true size: "fit", a number, or a ratio such as 1:5'),
-    ("--hinge", "STYLE", "cone or clip, printed in place; filament, screw-m2 or screw-m3, pinned after printing"),
-    ("--clearance", "MM", "gap that a hinge is printed with, 0.15 to 1; auto: by calibration or nozzle"),
-    ("--nozzle", "MM", "diameter of the nozzle (0.4)"),
-    ("--layer", "MM", "height of a layer (0.2)"),
-    ("--material", "M", "pla, petg, abs or nylon"),
-    ("--thickness", "MM", "thickness of plates and panels, 2 to 20"),
-    ("--base-thickness", "MM", "thickness of base plates, where it is another"),
-    ("--alpha", "A", "weight of inserted hinges (1) against shrinking (0)"),
-    ("--max-hinges", "N", "most hinges that may be inserted in one patch, 1 to 9"),
-    ("--shrink-steps", "N", "how many pieces a patch is cut into for shrinking, 1 to 20"),
-    ("--ordering", "O", "greedy, as in the paper, or optimal: modifications and order chosen in one shot"),
-    ("--collisions", "C", "swept: shapes that meet in time; or regions: the paper's own test"),
-    ("--time-limit", "SECONDS", "of work on an ordinary machine, up to 3600"),
-)
-_SWITCHES = ("slanting", "stay_in_box", "symmetry", "own_thickness", "latch")
-_SLICER = "--slicer"
-_REPEATED = (("--rigid", "NAME", "a part that must not get a hinge in its middle; may be given again for others"),)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -63,7 +41,7 @@ def _guarded(argv: Sequence[str]) -> int:
     from foldfab.errors import FoldfabError
 
     try:
-        arguments = _parser().parse_args(_joined(argv))
+        arguments = parser(_COMMANDS, _Version).parse_args(joined(argv))
         command: Callable[[argparse.Namespace], int] = arguments.command
         return command(arguments)
     except SystemExit as leave:
@@ -242,7 +220,7 @@ def _load(arguments: argparse.Namespace, progress: _Progress) -> Recipe:
     progress("reading")
     from foldfab import pipeline
 
-    overrides: dict[str, Any] = {name: getattr(arguments, name) for name in (*_option_names(), *_SWITCHES)}
+    overrides: dict[str, Any] = {name: getattr(arguments, name) for name in (*option_names(), *SWITCHES)}
     return pipeline.load(arguments.recipe, **{key: value for key, value in overrides.items() if value is not None})
 
 
@@ -266,82 +244,6 @@ class _Progress:
             print(_CLEAR, end="", file=sys.stderr, flush=True)
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="foldfab", description="Furniture becomes a print that folds flat.", allow_abbrev=False
-    )
-    parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
-    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
-    making = _command(commands, "print", _print, "fold a recipe's furniture and write a folder that prints")
-    making.add_argument("-o", "--output", metavar="DIR", default="prints", help="where its folder goes (prints)")
-    making.add_argument("--step", action="store_true", help="write a STEP file for CAD too, by build123d")
-    folding = _command(commands, "fold", _fold, "only say what would be changed, in which order, at which cost")
-    folding.add_argument("--json", action="store_true", help="print the facts as JSON")
-    how_many = f"show the best K folds, 1 to {MOST_ALTERNATIVES}, and how they differ"
-    folding.add_argument("--alternatives", metavar="K", type=_how_many, help=how_many)
-    folding.add_argument(
-        "--verify", action="store_true", help="try the fold out at every moment, apart from the search"
-    )
-    comparing = _command(commands, "postures", _postures, "what each posture takes, by the slicer")
-    told = ((comparing, "show no progress"), (making, "show no progress and no summary"), (folding, "show no progress"))
-    for command, quiet in told:
-        command.add_argument("recipe", metavar="RECIPE", help="a .json file, or the name of a shipped recipe")
-        command.add_argument("-q", "--quiet", action="store_true", help=quiet)
-        _add_options(command)
-    checking = _command(commands, "check", _check, "inspect a print folder from its files alone")
-    checking.add_argument("folder", metavar="FOLDER", help="a folder that `foldfab print` wrote")
-    checking.add_argument("--json", action="store_true", help="print the facts as JSON")
-    slicing = "slice it with PrusaSlicer too: time, filament, support, repairs, outlines at hinges"
-    checking.add_argument(_SLICER, metavar="=PATH", nargs="?", const="", help=slicing)
-    _command(commands, "recipes", _recipes, "list the recipes that foldfab ships")
-    composing = _command(
-        commands, "compose", _compose, "arrange furniture in a grid, as a recipe to measure foldfab by"
-    )
-    composing.add_argument("kind", metavar="KIND", help="bench, building, hexagon or shelf")
-    composing.add_argument("grid", metavar="GRID", help="columns x rows, such as 4x4; at most 32x32")
-    composing.add_argument("-o", "--output", metavar="FILE", help="where the recipe goes (KIND-GRID.json, here)")
-    trying = _command(commands, "coupon", _coupon, "the same hinge in a row of clearances, to calibrate a printer by")
-    trying.add_argument("--printer", metavar="NAME", required=True, help="a known printer or a build volume")
-    trying.add_argument("--posture", metavar="P", default="open", help="how its hinges are printed: open or folded")
-    trying.add_argument("--thickness", metavar="MM", default="4", help="thickness of its plates (4)")
-    trying.add_argument("-o", "--output", metavar="DIR", default="prints", help="where its folder goes (prints)")
-    keeping = _command(commands, "calibrate", _calibrate, "keep the clearance that a printer prints hinges well with")
-    keeping.add_argument("--printer", metavar="NAME", required=True, help="a known printer or a build volume")
-    keeping.add_argument("clearance", metavar="CLEARANCE", type=float, help="mm, 0.15 to 1")
-    return parser
-
-
-def _command(
-    commands: argparse._SubParsersAction[argparse.ArgumentParser],
-    name: str,
-    run: Callable[[argparse.Namespace], int],
-    text: str,
-) -> argparse.ArgumentParser:
-    parser = commands.add_parser(name, help=text, description=text, allow_abbrev=False)
-    parser.set_defaults(command=run)
-    return parser
-
-
-def _add_options(parser: argparse.ArgumentParser) -> None:
-    """Options that replace the recipe's own; their values are judged by the recipe room, all at once."""
-    group = parser.add_argument_group("options that replace the recipe's")
-    for option, metavar, text in _OPTIONS:
-        group.add_argument(option, metavar=metavar, help=text)
-    for option, metavar, text in _REPEATED:
-        group.add_argument(option, metavar=metavar, action="append", help=text)
-    group.add_argument("--no-slanting", dest="slanting", action="store_false", default=None, help="fold in place only")
-    group.add_argument("--stay-in-box", action="store_true", default=None, help="stay within the bounding box")
-    group.add_argument("--latch", action="store_true", default=None, help="detents that hold base hinges open")
-    group.add_argument("--symmetry", action="store_true", default=None, help="treat mirrored parts alike")
-    group.add_argument("--own-thickness", action="store_true", default=None, help="parts as thick as they are, or more")
-
-
-def _how_many(text: str) -> int:
-    if text not in map(str, range(1, MOST_ALTERNATIVES + 1)):
-        raise argparse.ArgumentTypeError(f"should be a whole number from 1 to {MOST_ALTERNATIVES}, not {text!r}")
-    return int(text)
-
-
 class _Version(argparse.Action):
     """Looked up only when asked for: importlib.metadata is slow to import."""
 
@@ -353,23 +255,6 @@ class _Version(argparse.Action):
         except PackageNotFoundError:
             print("foldfab 0.0.0 (not installed)")
         parser.exit()
-
-
-def _joined(argv: Sequence[str]) -> list[str]:
-    """Values that begin with a minus are tied to their option; argparse would take `-z` for an option of its own.
-
-    `--slicer` alone is tied to nothing: argparse would take the folder behind it for its path.
-    """
-    valued = {option for option, _, _ in (*_OPTIONS, *_REPEATED)}
-    arguments, left = list[str](), iter(argv)
-    for argument in left:
-        value = next(left, None) if argument in valued else "" if argument == _SLICER else None
-        arguments.append(argument if value is None else f"{argument}={value}")
-    return arguments
-
-
-def _option_names() -> tuple[str, ...]:
-    return tuple(option[2:].replace("-", "_") for option, _, _ in (*_OPTIONS, *_REPEATED))
 
 
 def _print_json(facts: dict[str, Any]) -> None:
@@ -395,6 +280,18 @@ def _show_any_letter(stream: object) -> None:
     """A terminal that cannot show × or α gets an escape instead of a crash."""
     if isinstance(stream, io.TextIOWrapper):
         stream.reconfigure(errors="backslashreplace")
+
+
+_COMMANDS: dict[str, Run] = {
+    "print": _print,
+    "fold": _fold,
+    "postures": _postures,
+    "check": _check,
+    "recipes": _recipes,
+    "compose": _compose,
+    "coupon": _coupon,
+    "calibrate": _calibrate,
+}
 
 
 if __name__ == "__main__":

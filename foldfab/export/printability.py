@@ -14,7 +14,7 @@ import numpy as np
 from foldfab.export.faults import Faults, faults
 from foldfab.export.hanging import floating, overhang_areas
 from foldfab.export.solid import Solid, close_pairs, solid
-from foldfab.export.walls import thinnest
+from foldfab.fabrication.walls import thinnest
 from foldfab.geometry.arrays import Array, Indices
 from foldfab.slicing.profile import CLOSING_RADIUS_MM, LAYER_MM, LINE_MM, NOZZLE_MM
 
@@ -116,11 +116,15 @@ def _slivers(found: list[tuple[str, Faults]]) -> Kind:
 
 
 def _walls(bodies: list[Solid]) -> Kind:
-    found = [(*thinnest(body, 2 * LINE_MM), body.name) for body in bodies]
+    found = [(*_thinnest(body, 2 * LINE_MM), body.name) for body in bodies]
     least, _, name = min(found)
     text = f"none under {2 * LINE_MM:g} mm" if least >= 2 * LINE_MM else f"thinnest {least:.2f} mm, of {name}"
-    count = sum(thinnest(body, LINE_MM)[1] for body in bodies) if least < LINE_MM else 0
+    count = sum(_thinnest(body, LINE_MM)[1] for body in bodies) if least < LINE_MM else 0
     return Kind("thin walls", True, count, f"{text}; a line is {LINE_MM:g} mm wide")
+
+
+def _thinnest(body: Solid, limit: float) -> tuple[float, int]:
+    return thinnest(body.vertices, body.faces, body.manifold, limit)
 
 
 def _gaps(bodies: list[Solid], clearance: float) -> Kind:

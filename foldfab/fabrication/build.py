@@ -45,16 +45,10 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
         FabricationError: a finding means that the print would not work; it says which part and what to change.
     """
     tell = progress or (lambda what, share: None)
-    options = solution.scaffold.recipe.print
-    problem = hinge_problem(options.hinge, options.thickness, posture)
-    if needs_pins(posture) and options.hinge == "cone":
-        problem = "hinges pinned by cones print in place only; load the recipe with the posture plate, or another hinge"
-    if problem:
-        raise FabricationError(problem)
+    _require_hinges(solution, posture)
     tell("solids", 0.0)
     described, findings = _shapes(solution)
     made = _solids(described)
-    findings += snap_findings(solution)
     times = key_times(solution)
     poses = configuration(solution, times)
     up = edge_up(solution, made, poses) if posture == "edge" else None
@@ -62,25 +56,44 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
         made, taken = planed(made, poses, up, PLANED * solution.thickness.panel)
         findings += _planed(taken)
         made = {name: solids.tidied(body) for name, body in relieved(solution, made, up).items()}
-    found = tuple(_joints(solution))
-    findings += [Finding("posture", options.why)] if options.why else []
-    findings += [Finding("note", note) for note in solution.notes]
-    draft = Assembly(solution, (), found, times, {n: poses[n] for n in made}, posture, (), described, up)
+    joints_ = tuple(_joints(solution))
+    draft = Assembly(solution, (), joints_, times, {n: poses[n] for n in made}, posture, (), described, up)
     tell("stops", 0.0)
     held = stopped(draft, made)
-    made = held.made
-    bodies = tuple(_body(solution, name, made[name]) for name in sorted(made))
-    draft = replace(draft, bodies=bodies, joints=held.joints, shapes=held.shapes)
+    draft = replace(draft, bodies=_bodies(solution, held.made), joints=held.joints, shapes=held.shapes)
     if up is not None:
-        props = propped(made, poses, up, solution.thickness.gap)
-        draft = replace(draft, propped=tuple(_body(solution, name, props[name]) for name in sorted(props)))
-    findings += inspect(draft, made, lambda share: tell("inspection", share), held.gives)
+        props = propped(held.made, poses, up, solution.thickness.gap)
+        draft = replace(draft, propped=_bodies(solution, props))
+    findings += [*snap_findings(solution), *_notes(solution)]
+    findings += inspect(draft, held.made, lambda share: tell("inspection", share), held.gives)
+    _require_sound(findings)
+    return replace(draft, findings=tuple(findings))
+
+
+def _require_hinges(solution: FoldSolution, posture: Posture) -> None:
+    options = solution.scaffold.recipe.print
+    problem = hinge_problem(options.hinge, options.thickness, posture)
+    if needs_pins(posture) and options.hinge == "cone":
+        problem = "hinges pinned by cones print in place only; load the recipe with the posture plate, or another hinge"
+    if problem:
+        raise FabricationError(problem)
+
+
+def _require_sound(findings: list[Finding]) -> None:
     fatal = [f for f in findings if f.is_fatal]
     if fatal:
         told = "".join(f"\n  {f.code}: {f.text}" for f in fatal[:12])
         more = f"\n  and {len(fatal) - 12} more" if len(fatal) > 12 else ""
         raise FabricationError(f"this print would not work:{told}{more}")
-    return replace(draft, findings=tuple(findings))
+
+
+def _notes(solution: FoldSolution) -> list[Finding]:
+    why = solution.scaffold.recipe.print.why
+    return [*([Finding("posture", why)] if why else []), *(Finding("note", note) for note in solution.notes)]
+
+
+def _bodies(solution: FoldSolution, made: dict[str, Solid]) -> tuple[Body, ...]:
+    return tuple(_body(solution, name, made[name]) for name in sorted(made))
 
 
 def _shapes(solution: FoldSolution) -> tuple[dict[str, Shape], list[Finding]]:

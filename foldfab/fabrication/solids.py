@@ -27,6 +27,8 @@ SIDES = 32
 
 SLIVERS = (1e-3, 3e-3, 1e-2, 3e-2)
 """Detail that may be given up, mm; the finest that leaves a sound mesh is taken."""
+FLAT = 2e-5
+"""A triangle that is lower than this, mm, may have no area any more on the grid of a file, wherever it is turned."""
 WELD_DIGITS = 5
 """Vertices closer than this many decimals of a millimetre are one in a file."""
 
@@ -121,14 +123,25 @@ def tidied(body: Solid) -> Solid:
 
 
 def stays_closed(body: Solid) -> bool:
-    """Whether each edge still belongs to two triangles when vertices are welded on the grid of a 32-bit file."""
+    """Whether each edge still belongs to two triangles when vertices are welded on the grid of a 32-bit file.
+
+    A triangle that has no height on that grid any more does not count as one.
+    """
     vertices, faces = mesh(body)
     grid = np.round(vertices, WELD_DIGITS).astype(np.float32)
     _, index = np.unique(grid, axis=0, return_inverse=True)
     welded = index.reshape(-1)[faces]
     edges = np.sort(np.concatenate([welded[:, [0, 1]], welded[:, [1, 2]], welded[:, [2, 0]]]), axis=1)
     _, counts = np.unique(edges, axis=0, return_counts=True)
-    return bool((counts == 2).all())
+    return bool((counts == 2).all()) and _least_height(vertices[faces]) > FLAT
+
+
+def _least_height(corners: Array) -> float:
+    """Of triangles (m, 3, 3), mm."""
+    sides = corners - np.roll(corners, 1, axis=1)
+    doubled = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    longest = np.linalg.norm(sides, axis=2).max(axis=1)
+    return float(np.min(doubled / np.maximum(longest, FLAT), initial=np.inf))
 
 
 def pieces(body: Solid) -> int:

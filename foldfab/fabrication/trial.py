@@ -23,6 +23,7 @@ from foldfab.fabrication.shapes import cut, union
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.stops import Stop
 from foldfab.fabrication.turning import Turn, stops_at, turn
+from foldfab.fabrication.walls import thin_sides
 from foldfab.folding.kinematics import configuration
 from foldfab.geometry.arrays import Array, Bools
 
@@ -43,6 +44,7 @@ class Trial:
         self._extent = np.min([c[0] for c in corners], axis=0), np.max([c[1] for c in corners], axis=0)
         self._feet = list(_feet(assembly))
         self.turns = {j.name: turn(j, *(self.poses[p] for p in j.parts)) for j in assembly.joints}
+        self._thin = {name: thin_sides(solid) for name, solid in made.items()}
         self.gives: dict[str, list[Solid]] = {}
         """By panel, what of it gives way while it passes its latches."""
         self._parts = {j.name: j.parts for j in assembly.joints}
@@ -60,7 +62,8 @@ class Trial:
         after = self._angle(stop.joint, made, stop.is_folded)
         if after is None or (before is not None and after >= before) or not self._has_room(stop, made):
             return None
-        return after
+        # What lies between two holes may be too thin to be printed.
+        return None if any(thin_sides(made[n]) > self._thin[n] for n in (stop.body, stop.other)) else after
 
     def take(self, stop: Stop) -> None:
         """Makes a stop."""

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from foldfab.fabrication.walls import LINE
 from foldfab.recipe.model import Printer
 
-NOZZLE_MM, LAYER_MM, LINE_MM = 0.4, 0.2, 0.45
+NOZZLE_MM, LAYER_MM, LINE_MM = 0.4, 0.2, LINE
 """Nozzle, layer height, and width of an extruded line."""
 CLOSING_RADIUS_MM = 0.049
 """PrusaSlicer closes gaps up to twice this when it slices; its default, stated because we measure against it."""

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from foldfab.export.solid import Solid
-from foldfab.geometry.arrays import Array
+from foldfab.fabrication.solids import Solid, mesh
+from foldfab.geometry.arrays import Array, Indices
+
+LINE = 0.45
+"""Width of a line of a 0.4 mm nozzle: what is thinner is not printed, mm."""
 
 OPPOSITE = 0.9
 """Cosine: facets that look within 26° of opposite ways are the sides of a wall, and not those of an edge or a tip."""
@@ -17,12 +20,17 @@ SHARES = np.array([[1 / 3, 1 / 3, 1 / 3], [0.8, 0.1, 0.1], [0.1, 0.8, 0.1], [0.1
 """Where in a facet, in shares of its corners, the wall is measured."""
 
 
-def thinnest(body: Solid, limit: float) -> tuple[float, int]:
+def thin_sides(body: Solid) -> int:
+    """How many facets of a body are sides of walls that are thinner than a line."""
+    return thinnest(*mesh(body), body, LINE)[1]
+
+
+def thinnest(vertices: Array, faces: Indices, body: Solid, limit: float) -> tuple[float, int]:
     """Thickness of the thinnest wall, mm, or `limit` where none is thinner; how many facets are sides of thinner ones.
 
-    O(facets · log facets).
+    Of a body with its mesh, (n, 3) and (m, 3). O(facets · log facets).
     """
-    corners = body.vertices[body.faces]
+    corners = vertices[faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1)
     is_flat = lengths > 0
@@ -41,7 +49,7 @@ def _thickness(body: Solid, points: Array, inward: Array, limit: float) -> Array
     starts, ends = (points + INSIDE_MM * inward).tolist(), (points + limit * inward).tolist()
     found = np.full(len(points), limit)
     for index, (start, end) in enumerate(zip(starts, ends, strict=True)):
-        hits = body.manifold.ray_cast(start, end)
+        hits = body.ray_cast(start, end)
         if hits and float(np.dot(hits[0].normal, inward[index])) > OPPOSITE:
             found[index] = np.dot(hits[0].position - points[index], inward[index])
     return found

@@ -57,6 +57,12 @@ def parser(run: Mapping[str, Run], version: type[argparse.Action]) -> argparse.A
         command.add_argument("recipe", metavar="RECIPE", help="a .json file, or the name of a shipped recipe")
         command.add_argument("-q", "--quiet", action="store_true", help=quiet)
         _add_options(command)
+    _add_looking(commands, run)
+    _add_calibrating(commands, run)
+    return made
+
+
+def _add_looking(commands: argparse._SubParsersAction[argparse.ArgumentParser], run: Mapping[str, Run]) -> None:
     checking = _command(commands, run, "check", "inspect a print folder from its files alone")
     checking.add_argument("folder", metavar="FOLDER", help="a folder that `foldfab print` wrote")
     checking.add_argument("--json", action="store_true", help="print the facts as JSON")
@@ -67,6 +73,9 @@ def parser(run: Mapping[str, Run], version: type[argparse.Action]) -> argparse.A
     composing.add_argument("kind", metavar="KIND", help="bench, building, hexagon or shelf")
     composing.add_argument("grid", metavar="GRID", help="columns x rows, such as 4x4; at most 32x32")
     composing.add_argument("-o", "--output", metavar="FILE", help="where the recipe goes (KIND-GRID.json, here)")
+
+
+def _add_calibrating(commands: argparse._SubParsersAction[argparse.ArgumentParser], run: Mapping[str, Run]) -> None:
     trying = _command(commands, run, "coupon", "the same hinge in a row of clearances, to calibrate a printer by")
     trying.add_argument("--printer", metavar="NAME", required=True, help="a known printer or a build volume")
     trying.add_argument("--posture", metavar="P", default="open", help="how its hinges are printed: open or folded")
@@ -75,7 +84,6 @@ def parser(run: Mapping[str, Run], version: type[argparse.Action]) -> argparse.A
     keeping = _command(commands, run, "calibrate", "keep the clearance that a printer prints hinges well with")
     keeping.add_argument("--printer", metavar="NAME", required=True, help="a known printer or a build volume")
     keeping.add_argument("clearance", metavar="CLEARANCE", type=float, help="mm, 0.15 to 1")
-    return made
 
 
 def _command(

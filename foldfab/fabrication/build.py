@@ -21,7 +21,7 @@ from foldfab.fabrication.relief import relieved
 from foldfab.fabrication.shapes import Shape
 from foldfab.fabrication.snaps import snap_findings
 from foldfab.fabrication.solids import Solid
-from foldfab.fabrication.stopping import stopped
+from foldfab.fabrication.stopping import measured, stopped
 from foldfab.folding.kinematics import configuration, key_times
 from foldfab.folding.mechanism import frames, joints, tilts
 from foldfab.folding.model import Chain, FoldSolution
@@ -55,17 +55,18 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
     if up is not None:
         made, taken = planed(made, poses, up, PLANED * solution.thickness.panel)
         findings += _planed(taken)
-        made = {name: solids.tidied(body) for name, body in relieved(solution, made, up).items()}
     joints_ = tuple(_joints(solution))
     draft = Assembly(solution, (), joints_, times, {n: poses[n] for n in made}, posture, (), described, up)
     tell("stops", 0.0)
     held = stopped(draft, made)
-    draft = replace(draft, bodies=_bodies(solution, held.made), joints=held.joints, shapes=held.shapes)
+    made, draft = held.made, replace(draft, joints=held.joints, shapes=held.shapes)
     if up is not None:
-        props = propped(held.made, poses, up, solution.thickness.gap)
-        draft = replace(draft, propped=_bodies(solution, props))
+        made = {name: solids.tidied(body) for name, body in relieved(solution, made, up).items()}
+        props = propped(made, poses, up, solution.thickness.gap)
+        draft = replace(draft, joints=measured(draft, made), propped=_bodies(solution, props))
+    draft = replace(draft, bodies=_bodies(solution, made))
     findings += [*snap_findings(solution), *_notes(solution)]
-    findings += inspect(draft, held.made, lambda share: tell("inspection", share), held.gives)
+    findings += inspect(draft, made, lambda share: tell("inspection", share), held.gives)
     _require_sound(findings)
     return replace(draft, findings=tuple(findings))
 

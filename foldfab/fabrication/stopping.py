@@ -39,7 +39,8 @@ def stopped(assembly: Assembly, made: dict[str, Solid]) -> Stopped:
     for chain, hinge, name in _hinges(assembly):
         ways = (
             (False, stops(assembly.solution, chain, hinge, in_open=assembly.posture in ("open", "plate"))),
-            (True, rests(assembly.solution, chain, hinge)),
+            # On edge a rest would begin in the air.
+            (True, rests(assembly.solution, chain, hinge) if assembly.posture != "edge" else ()),
         )
         for is_folded, candidates in ways:
             best = _best(trial, name, candidates, is_folded)
@@ -52,6 +53,12 @@ def stopped(assembly: Assembly, made: dict[str, Solid]) -> Stopped:
         for j in assembly.joints
     )
     return Stopped(trial.made, trial.shapes, joints, trial.gives)
+
+
+def measured(assembly: Assembly, made: dict[str, Solid]) -> tuple[Joint, ...]:
+    """The joints with what each reaches on bodies that were changed after they got their stops."""
+    trial = Trial(assembly, made)
+    return tuple(replace(j, stop_deg=_angles(trial, j.name)) for j in assembly.joints)
 
 
 def _hinges(assembly: Assembly) -> Iterator[tuple[Chain, int, str]]:

@@ -21,7 +21,7 @@ from foldfab.geometry.arrays import Array
 
 def test_prusas_names_cover_the_mesh(assembly: Assembly) -> None:
     shells = on_bed(assembly)
-    root = ElementTree.fromstring(prusa_config("stool", shells, 1))
+    root = ElementTree.fromstring(prusa_config([(1, "stool", shells)]))
     (thing,) = root
     rows = {row.get("key"): row.get("value") for row in thing.findall("metadata")}
     assert rows == {"name": "stool", **SETTINGS}
@@ -33,7 +33,7 @@ def test_prusas_names_cover_the_mesh(assembly: Assembly) -> None:
 
 
 def test_bambus_part_has_the_id_of_the_mesh() -> None:
-    (thing,) = ElementTree.fromstring(bambu_config('<odd> & "even"', OBJECT_ID))
+    (thing,) = ElementTree.fromstring(bambu_config([(OBJECT_ID, '<odd> & "even"', ())]))
     part = thing.find("part")
     assert part is not None and part.attrib == {"id": str(OBJECT_ID), "subtype": "normal_part"}
     assert thing.get("id") == str(OBJECT_ID)

@@ -14,6 +14,8 @@ from foldfab.fabrication import solids
 from foldfab.fabrication.coupon import coupon
 from foldfab.fabrication.model import Body
 from foldfab.fabrication.numbers import strokes, text_width
+from foldfab.fabrication.printed import printed
+from foldfab.fabrication.shapes import union
 from foldfab.recipe.model import Posture
 
 
@@ -46,8 +48,8 @@ def test_a_coupon_without_any_hinge_is_refused(monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_digits_differ_and_are_as_wide_as_they_say() -> None:
-    shapes = [solids.union(strokes(str(d), 0.0, 1.0, np.zeros(3), np.eye(3))) for d in range(10)]
+    shapes = [printed(union(strokes(str(d), 0.0, 1.0, np.zeros(3), np.eye(3)))) for d in range(10)]
     for a, b in itertools.combinations(shapes, 2):
         assert abs(a.volume() - b.volume()) + (a - b).volume() + (b - a).volume() > 1.0
-    low, high = solids.bounds(solids.union(strokes("0.25", 0.0, 1.0, np.zeros(3), np.eye(3))))
+    low, high = solids.bounds(printed(union(strokes("0.25", 0.0, 1.0, np.zeros(3), np.eye(3)))))
     assert high[0] - low[0] == pytest.approx(text_width("0.25"))

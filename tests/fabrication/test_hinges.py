@@ -123,8 +123,8 @@ def test_other_styles(
     thickness = Thickness(STYLES[kind].least_thickness, gap, kind)
     wide = thickness.hinge_width if width == "least" else 60.0
     chain = make_chain(thickness, lengths=(25.0, 25.0), width=wide)
-    ground, _ = plate(make_base((0, 0, 40, 40)), (chain,), thickness)
-    lower, upper = panels(chain, thickness)
+    shape, _ = plate(make_base((0, 0, 40, 40)), (chain,), thickness)
+    ground, lower, upper = (printed(s) for s in (shape, *panels(chain, thickness)))
     for body in (ground, lower, upper):
         assert_printable(solids.tidied(body))
     moving = poses(chain)

@@ -14,6 +14,7 @@ from foldfab.export.write import write
 from foldfab.fabrication import solids
 from foldfab.fabrication.latches import FLEX, HOLDS_WITHIN, PRONG, SLIT, STIFFNESS, detent, tried
 from foldfab.fabrication.model import Assembly
+from foldfab.fabrication.printed import printed
 from foldfab.fabrication.stops import Stop, stops
 from foldfab.fabrication.trial import Trial
 from foldfab.fabrication.turning import turn
@@ -47,9 +48,9 @@ def test_it_holds_and_lets_go_on_the_solids(assembled: Callable[..., Assembly]) 
     is_first = joint.parts[0] == stop.other
     base, panel = made[stop.other], made[stop.body]
     assert tried(range_, base, panel, stop.detent, is_base_first=is_first) is not None
-    without_ridges = solids.cut(base, [stop.detent.ridges])
+    without_ridges = solids.cut(base, [printed(stop.detent.ridges)])
     assert tried(range_, without_ridges, panel, stop.detent, is_base_first=is_first) is None
-    middle = sum(solids.bounds(stop.detent.slit)) / 2
+    middle = sum(solids.bounds(printed(stop.detent.slit))) / 2
     block = solids.box(middle - np.array([12.0, 6.0, 3.0]), middle + np.array([12.0, 6.0, 1.0]))
     assert tried(range_, solids.union([base, block]), panel, stop.detent, is_base_first=is_first) is None
 

@@ -12,6 +12,7 @@ from foldfab.fabrication import solids
 from foldfab.fabrication.inspect import inspect
 from foldfab.fabrication.model import Assembly
 from foldfab.fabrication.panels import panels
+from foldfab.fabrication.printed import printed
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.stops import rests, stops
 from foldfab.fabrication.trial import Trial
@@ -64,7 +65,7 @@ def test_a_stop_without_room_is_not_made(assembled: Callable[..., Assembly]) -> 
     trial = Trial(assembly, made)
     (first, *_) = stops(assembly.solution, chain, 1, in_open=True)
     assert trial.better(first) is not None
-    low, high = solids.bounds(first.added)
+    low, high = solids.bounds(printed(first.added))
     blocked = {**made, "roof": solids.union([made["roof"], pillar(made["roof"], low, high)])}
     assert Trial(assembly, blocked).better(first) is None
 
@@ -75,7 +76,7 @@ def test_a_folded_panel_without_a_base_below_gets_a_rest(assembled: Callable[...
     (rest, *_) = rests(assembly.solution, chain, 0)
     face = solids.bounds(without_stops(assembly)["wall/1"])[0][2] - assembly.solution.thickness.gap
     assert rest.body == "ground"
-    assert solids.bounds(rest.added)[1][2] == pytest.approx(face, abs=0.02)
+    assert solids.bounds(printed(rest.added))[1][2] == pytest.approx(face, abs=0.02)
     assert list(rests(assembly.solution, chain, 1)) == []
 
 
@@ -89,7 +90,7 @@ def without_stops(assembly: Assembly) -> dict[str, Solid]:
     made = as_solids(assembly)
     for chain in assembly.solution.chains:
         plain = panels(chain, assembly.solution.thickness)
-        made.update((name, solids.tidied(solid)) for name, solid in zip(chain.panels, plain, strict=True))
+        made.update((name, solids.tidied(printed(shape))) for name, shape in zip(chain.panels, plain, strict=True))
     return made
 
 

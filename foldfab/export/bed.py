@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from foldfab.export.frames import moved, to_sheet
-from foldfab.export.packing import Size, fits, packed
+from foldfab.export.packing import packed
 from foldfab.export.shell import GRID_DIGITS, Shell, bounds, snapped
 from foldfab.fabrication.lying import lying
 from foldfab.fabrication.model import Assembly, Body
@@ -42,19 +42,13 @@ def on_plates(assembly: Assembly) -> tuple[tuple[Shell, ...], ...]:
     volume = assembly.solution.scaffold.recipe.print.printer.build_volume
     laid = [lying(body) for body in assembly.bodies]
     sizes = [(float(x), float(y)) for x, y in (np.ptp(points[:, :2], axis=0) for points in laid)]
-    spots = packed(sizes, _plate(sizes, (volume[0], volume[1])), SPACE_MM)
+    spots = packed(sizes, (volume[0], volume[1]), SPACE_MM, RIM_MM)
     plates: list[list[tuple[Body, Array]]] = [[] for _ in range(1 + max(spot.plate for spot in spots))]
     for body, points, spot in zip(assembly.bodies, laid, spots, strict=True):
         turned = _quarter(points) if spot.is_turned else points
         corner = np.append(turned[:, :2].min(axis=0) - spot.corner, 0.0)
         plates[spot.plate].append((body, turned - corner))
     return tuple(_centred(plate, volume) for plate in plates)
-
-
-def _plate(sizes: list[Size], bed: Size) -> Size:
-    """What of the bed is used: not its rim, unless a part needs it."""
-    inner = (bed[0] - 2 * RIM_MM, bed[1] - 2 * RIM_MM)
-    return inner if all(fits(size, inner) for size in sizes) else bed
 
 
 def print_files(assembly: Assembly) -> dict[str, tuple[Shell, ...]]:

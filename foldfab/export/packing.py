@@ -42,8 +42,8 @@ def fits(size: Size, plate: Size) -> bool:
     return _width_first(size, plate) is not None
 
 
-def packed(sizes: list[Size], plate: Size, space: float) -> list[Spot]:
-    """A spot for each rectangle, `space` mm apart.
+def packed(sizes: list[Size], plate: Size, space: float, rim: float = 0.0) -> list[Spot]:
+    """A spot for each rectangle, `space` mm apart; only what stands alone in its row or column uses the plate's rim.
 
     Raises:
         ValueError: one of them is larger than a plate.
@@ -55,7 +55,7 @@ def packed(sizes: list[Size], plate: Size, space: float) -> list[Spot]:
     order = sorted(range(len(sizes)), key=lambda i: (-known[i][1], -known[i][0], i))
     state, spots = _Rows(), dict[int, Spot]()
     for i in order:
-        row = _room(state, known[i], plate, space)
+        row = _room(state, known[i], (plate[0] - 2 * rim, plate[1] - 2 * rim), space)
         x = row.end + space if row.end > 0 else 0.0
         row.end = x + known[i][0]
         spots[i] = Spot(row.plate, (x, row.y), known[i] != sizes[i])
@@ -68,13 +68,13 @@ def _width_first(size: Size, plate: Size) -> Size | None:
     return next((s for s in ways if s[0] <= plate[0] and s[1] <= plate[1]), None)
 
 
-def _room(state: _Rows, size: Size, plate: Size, space: float) -> _Row:
+def _room(state: _Rows, size: Size, inner: Size, space: float) -> _Row:
     """The first row with room, or a new one on the first plate with room, or on a new plate."""
     for row in state.rows:
-        if row.end + space + size[0] <= plate[0] and size[1] <= row.depth:
+        if row.end + space + size[0] <= inner[0] and size[1] <= row.depth:
             return row
     for number, top in enumerate(state.tops):
-        if top + space + size[1] <= plate[1]:
+        if top + space + size[1] <= inner[1]:
             return _new_row(state, number, top + space, size[1])
     state.tops.append(0.0)
     return _new_row(state, len(state.tops) - 1, 0.0, size[1])

@@ -14,9 +14,14 @@ import numpy as np
 from foldfab.export.frames import to_sheet
 from foldfab.fabrication.model import Assembly, Body
 from foldfab.geometry.arrays import Array, Bools, Indices
+from foldfab.geometry.flat_triangles import flipped, heights
 
+FLAT_MM = 1e-4
+"""Triangles lower than this have no area that a slicer would see."""
 GRID_DIGITS = 5
 """Vertices stand on a grid of 0.01 µm, about what a 32-bit float resolves at 200 mm."""
+COARSER = (4, 3)
+"""Digits of coarser grids, down to the 1 µm on which sizes stand, where slivers cannot be had out otherwise."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,15 +44,26 @@ def sheet_shells(assembly: Assembly) -> tuple[Shell, ...]:
 
 
 def snapped(body: Body, points: Array) -> Shell:
-    """The body with its vertices at (n, 3) `points`, rounded to the grid; collapsed triangles are dropped."""
-    rounded = np.round(points, GRID_DIGITS).astype(np.float32).astype(np.float64) + 0.0
+    """The body with its vertices at (n, 3) `points`, rounded to the grid; triangles without an area are taken out."""
     is_hinge = np.zeros(len(body.faces), dtype=bool)
     is_hinge[body.hinge_faces] = True
-    vertices, faces, is_kept = _welded(rounded, body.faces)
-    if not is_closed(faces):
+    found: list[tuple[int, Shell]] = []
+    for digits in (GRID_DIGITS, *COARSER):
+        vertices, faces, is_kept = _welded(_rounded(points, digits), body.faces)
+        if is_closed(faces):
+            whole = flipped(vertices, faces, FLAT_MM)
+            flat = int(np.sum(heights(vertices[whole]) < FLAT_MM))
+            found.append((flat, Shell(body.name, body.kind, vertices, whole, is_hinge[is_kept])))
+            if not flat:
+                break
+    if not found:
         # Welding made two sheets of the body touch along an edge: indices keep them apart.
-        return Shell(body.name, body.kind, rounded, body.faces, is_hinge)
-    return Shell(body.name, body.kind, vertices, faces, is_hinge[is_kept])
+        return Shell(body.name, body.kind, _rounded(points, GRID_DIGITS), body.faces, is_hinge)
+    return min(found, key=lambda one: one[0])[1]
+
+
+def _rounded(points: Array, digits: int) -> Array:
+    return np.round(points, digits).astype(np.float32).astype(np.float64) + 0.0
 
 
 def is_closed(faces: Indices) -> bool:

@@ -17,7 +17,7 @@ from foldfab.fabrication.plates import axis_of, plate
 from foldfab.fabrication.posture import edge_up, needs_pins
 from foldfab.fabrication.printed import printed
 from foldfab.fabrication.props import planed, propped
-from foldfab.fabrication.relief import relieved
+from foldfab.fabrication.relief import relief
 from foldfab.fabrication.shapes import Shape
 from foldfab.fabrication.snaps import snap_findings
 from foldfab.fabrication.solids import Solid
@@ -58,10 +58,11 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
     joints_ = tuple(_joints(solution))
     draft = Assembly(solution, (), joints_, times, {n: poses[n] for n in made}, posture, (), described, up)
     tell("stops", 0.0)
-    held = stopped(draft, made)
+    ramps = relief(solution, made, up) if up is not None else {}
+    held = stopped(draft, made, ramps)
     made, draft = held.made, replace(draft, joints=held.joints, shapes=held.shapes)
     if up is not None:
-        made = {name: solids.tidied(body) for name, body in relieved(solution, made, up).items()}
+        made = {name: solids.tidied(solids.cut(body, ramps[name])) for name, body in made.items()}
         props = propped(made, poses, up, solution.thickness.gap)
         draft = replace(draft, joints=measured(draft, made), propped=_bodies(solution, props))
     draft = replace(draft, bodies=_bodies(solution, made))

@@ -52,14 +52,14 @@ class _Shelf:
     """x of the face of its own panel beside which an inserted hinge stands, mm; 0 for a hinge in mid-plane."""
 
 
-def relieved(solution: FoldSolution, made: dict[str, Solid], up: Array) -> dict[str, Solid]:
-    """The bodies in the open posture, with ramps under all knuckles; `up` (3,) is a hinge direction.
+def relief(solution: FoldSolution, made: dict[str, Solid], up: Array) -> dict[str, list[Solid]]:
+    """By body, what is cut from it, open, to have ramps under all knuckles; `up` (3,) is a hinge direction.
 
     Hinges of other kinds than the cone stay as they are.
     """
-    if solution.thickness.hinge != "cone":
-        return made
     cutters: dict[str, list[Solid]] = {name: [] for name in made}
+    if solution.thickness.hinge != "cone":
+        return cutters
     for chain in solution.chains:
         thickness = solution.thickness.of(chain.panel)
         for name, shelf, origin, axes in _shelves(chain, thickness, up):
@@ -67,7 +67,7 @@ def relieved(solution: FoldSolution, made: dict[str, Solid], up: Array) -> dict[
             low = float((solids.mesh(made[name])[0] @ up).min() - origin @ up) * way
             faces = [f for f in shelf.faces if (f[0] - low) * way > STANDS]
             cutters[name] += [solids.placed(_cutter(shelf, face, way), origin, axes) for face in faces]
-    return {name: solids.cut(body, cutters[name]) for name, body in made.items()}
+    return cutters
 
 
 def _shelves(chain: Chain, thickness: Thickness, up: Array) -> list[tuple[str, _Shelf, Array, Array]]:

@@ -25,7 +25,7 @@ Outline: TypeAlias = CrossSection
 SIDES = 32
 """Sides of the polygon that stands for a circle."""
 
-SLIVERS = (1e-3, 3e-3, 1e-2, 3e-2)
+SLIVERS = (1e-3, 3e-3, 1e-2, 2e-2, 3e-2, 5e-2)
 """Detail that may be given up, mm; the finest that leaves a sound mesh is taken."""
 FLAT = 2e-5
 """A triangle that is lower than this, mm, may have no area any more on the grid of a file, wherever it is turned."""
@@ -113,12 +113,14 @@ def hull(parts: list[Solid]) -> Solid:
 def tidied(body: Solid) -> Solid:
     """The body without the slivers that booleans of nearly coplanar faces leave, which 32-bit files would pinch shut.
 
-    Detail is given up only as far as it takes for the mesh to stay closed when it is written.
+    Detail is given up only as far as it takes for the mesh to stay closed when it is written; where that does not do,
+    facets that come from different pieces are merged as well.
     """
-    for detail in SLIVERS:
-        tidy = checked(body.simplify(detail))
-        if stays_closed(tidy):
-            return tidy
+    for whole in (body, body.as_original()):
+        for detail in SLIVERS:
+            tidy = checked(whole.simplify(detail))
+            if stays_closed(tidy):
+                return tidy
     return tidy
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from foldfab.fabrication.model import Assembly, Joint, Latch
@@ -27,12 +27,12 @@ class Stopped:
     """By panel, what of it gives way while it passes its latches."""
 
 
-def stopped(assembly: Assembly, made: dict[str, Solid]) -> Stopped:
+def stopped(assembly: Assembly, made: dict[str, Solid], ramps: Mapping[str, list[Solid]]) -> Stopped:
     """The bodies with stops and, where they are asked for, latches.
 
-    `assembly` needs no bodies yet, but the shapes of which `made` was made.
+    `assembly` needs no bodies yet, but the shapes of which `made` was made; `ramps` is what will be cut from bodies.
     """
-    trial = Trial(assembly, made)
+    trial = Trial(assembly, made, ramps)
     taken: dict[str, tuple[str, ...]] = {joint.name: () for joint in assembly.joints}
     latches: dict[str, Latch | None] = {}
     is_latched = assembly.solution.scaffold.recipe.print.latch

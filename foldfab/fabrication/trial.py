@@ -7,7 +7,8 @@ instant at which the piece is near another body.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType
 
 import numpy as np
 
@@ -34,7 +35,10 @@ ROUNDING = 0.01
 class Trial:
     """The bodies of a print as they stand, to try pieces on."""
 
-    def __init__(self, assembly: Assembly, made: dict[str, Solid]) -> None:
+    def __init__(
+        self, assembly: Assembly, made: dict[str, Solid], ramps: Mapping[str, list[Solid]] = MappingProxyType({})
+    ) -> None:
+        """`ramps` is what will be cut from bodies once they have their stops."""
         self.assembly, self.made, self.shapes = assembly, made, dict(assembly.shapes)
         self.poses = configuration(assembly.solution, instants(assembly))
         self._bounds = {name: self._along(name, solid) for name, solid in made.items()}
@@ -44,7 +48,8 @@ class Trial:
         self._extent = np.min([c[0] for c in corners], axis=0), np.max([c[1] for c in corners], axis=0)
         self._feet = list(_feet(assembly))
         self.turns = {j.name: turn(j, *(self.poses[p] for p in j.parts)) for j in assembly.joints}
-        self._thin = {name: thin_sides(solid) for name, solid in made.items()}
+        self._ramps = ramps
+        self._thin = {name: self._thin_sides(name, solid) for name, solid in made.items()}
         self.gives: dict[str, list[Solid]] = {}
         """By panel, what of it gives way while it passes its latches."""
         self._parts = {j.name: j.parts for j in assembly.joints}
@@ -63,7 +68,10 @@ class Trial:
         if after is None or (before is not None and after >= before) or not self._has_room(stop, made):
             return None
         # What lies between two holes may be too thin to be printed.
-        return None if any(thin_sides(made[n]) > self._thin[n] for n in (stop.body, stop.other)) else after
+        return None if any(self._thin_sides(n, made[n]) > self._thin[n] for n in (stop.body, stop.other)) else after
+
+    def _thin_sides(self, name: str, solid: Solid) -> int:
+        return thin_sides(solids.cut(solid, self._ramps.get(name, [])))
 
     def take(self, stop: Stop) -> None:
         """Makes a stop."""

@@ -71,7 +71,7 @@ def check_printability(folder: Path, facts: Stated) -> list[Row]:
     """No kind of error is found in the print files, and `printability.json` counts what is found."""
     is_loose = facts.posture == "plate"
     plates = [_meshes(inside(folder, name), is_loose=is_loose) for name in facts.print_files]
-    found = printability(side_by_side(plates), facts.clearance)
+    found = printability(side_by_side(plates), facts.clearance, facts.propped)
     told = json.loads((folder / "printability.json").read_text(encoding="utf-8"))
     counts = {kind["name"]: kind["count"] for kind in told["kinds"]}
     problems = list(found.errors)

@@ -6,7 +6,7 @@ Nothing here asks a slicer. What is an error must not occur at all; what is a no
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import asdict, dataclass
 
 import numpy as np
@@ -59,8 +59,11 @@ class Printability:
         return tuple(f"{k.name}: {k.count:g}, {k.text}" for k in self.kinds if k.is_error and k.count)
 
 
-def printability(meshes: Sequence[Mesh], clearance: float) -> Printability:
-    """Of the bodies of a print as they lie on the bed; hinges are printed with `clearance`, mm."""
+def printability(meshes: Sequence[Mesh], clearance: float, propped: Collection[str] = ()) -> Printability:
+    """Of the bodies of a print as they lie on the bed; hinges are printed with `clearance`, mm.
+
+    Bodies that are `propped` stand on blocks that are broken off; what holds those is thin on purpose.
+    """
     found = [(name, faults(vertices, faces)) for name, vertices, faces in meshes]
     kinds = _mesh_kinds(found)
     if not all(fault.is_closed for _, fault in found):
@@ -71,7 +74,13 @@ def printability(meshes: Sequence[Mesh], clearance: float) -> Printability:
         )
     bodies = [solid(*mesh) for mesh in meshes]
     return Printability(
-        (*kinds, _walls(bodies), _gaps(bodies, clearance), *_hanging(bodies, clearance), _slivers(found))
+        (
+            *kinds,
+            _walls([b for b in bodies if b.name not in propped]),
+            _gaps(bodies, clearance),
+            *_hanging(bodies, clearance),
+            _slivers(found),
+        )
     )
 
 
@@ -117,7 +126,7 @@ def _slivers(found: list[tuple[str, Faults]]) -> Kind:
 
 def _walls(bodies: list[Solid]) -> Kind:
     found = [(*_thinnest(body, 2 * LINE_MM), body.name) for body in bodies]
-    least, _, name = min(found)
+    least, _, name = min(found, default=(2 * LINE_MM, 0, ""))
     text = f"none under {2 * LINE_MM:g} mm" if least >= 2 * LINE_MM else f"thinnest {least:.2f} mm, of {name}"
     count = sum(_thinnest(body, LINE_MM)[1] for body in bodies) if least < LINE_MM else 0
     return Kind("thin walls", True, count, f"{text}; a line is {LINE_MM:g} mm wide")

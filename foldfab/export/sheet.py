@@ -83,6 +83,7 @@ def _print(assembly: Assembly) -> dict[str, Any]:
         "clearance_mm": _length(thickness.gap),
         "clearance_from": scaffold.recipe.print.clearance_from,
         "printer": {"name": printer.name, "build_volume_mm": _lengths(np.array(printer.build_volume))},
+        "propped": [body.name for body in assembly.propped],
         "print_files": list(print_files(assembly)),
     }
 

@@ -20,8 +20,8 @@ FLAT_MM = 1e-4
 """Triangles lower than this have no area that a slicer would see."""
 GRID_DIGITS = 5
 """Vertices stand on a grid of 0.01 µm, about what a 32-bit float resolves at 200 mm."""
-COARSER = (4, 3)
-"""Digits of coarser grids, down to the 1 µm on which sizes stand, where slivers cannot be had out otherwise."""
+SHORT_MM = (1e-3, 3e-3)
+"""Edges shorter than this are given up where flat triangles cannot be had out otherwise."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,8 +48,8 @@ def snapped(body: Body, points: Array) -> Shell:
     is_hinge = np.zeros(len(body.faces), dtype=bool)
     is_hinge[body.hinge_faces] = True
     found: list[tuple[int, Shell]] = []
-    for digits in (GRID_DIGITS, *COARSER):
-        vertices, faces, is_kept = _welded(_rounded(points, digits), body.faces)
+    for short in (0.0, *SHORT_MM):
+        vertices, faces, is_kept = _welded(_rounded(_drawn_together(points, body.faces, short)), body.faces)
         if is_closed(faces):
             whole = flipped(vertices, faces, FLAT_MM)
             flat = int(np.sum(heights(vertices[whole]) < FLAT_MM))
@@ -58,12 +58,21 @@ def snapped(body: Body, points: Array) -> Shell:
                 break
     if not found:
         # Welding made two sheets of the body touch along an edge: indices keep them apart.
-        return Shell(body.name, body.kind, _rounded(points, GRID_DIGITS), body.faces, is_hinge)
+        return Shell(body.name, body.kind, _rounded(points), body.faces, is_hinge)
     return min(found, key=lambda one: one[0])[1]
 
 
-def _rounded(points: Array, digits: int) -> Array:
-    return np.round(points, digits).astype(np.float32).astype(np.float64) + 0.0
+def _drawn_together(points: Array, faces: Indices, short: float) -> Array:
+    """The points with the ends of each edge shorter than `short` in one place."""
+    made = points.copy()
+    edges = faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    for a, b in np.sort(edges[np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1) < short], axis=1):
+        made[b] = made[a]
+    return made
+
+
+def _rounded(points: Array) -> Array:
+    return np.round(points, GRID_DIGITS).astype(np.float32).astype(np.float64) + 0.0
 
 
 def is_closed(faces: Indices) -> bool:

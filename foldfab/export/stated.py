@@ -68,6 +68,8 @@ class Stated:
     bed: Array
     """(3,) build volume, mm."""
     print_files: tuple[str, ...]
+    propped: tuple[str, ...]
+    """Parts that are printed with a prop to be broken off."""
     space_saving: float
     alpha: float
     max_hinges: int
@@ -118,6 +120,7 @@ def stated(sheet: dict[str, Any]) -> Stated:
         clearance=_number(sheet["clearance_mm"]),
         bed=frozen(sheet["printer"]["build_volume_mm"], 3),
         print_files=tuple(_text(name) for name in sheet.get("print_files", [f"{sheet['name']}.3mf"])),
+        propped=tuple(_text(name) for name in sheet.get("propped", [])),
         space_saving=_number(sheet["space_saving"]),
         alpha=_number(sheet["options"]["alpha"]),
         max_hinges=int(_number(sheet["options"]["max_hinges"])),

@@ -60,7 +60,9 @@ def contents(assembly: Assembly, *, step: bool = False) -> dict[str, bytes]:
 
 def _printable(assembly: Assembly, printed: Mapping[str, tuple[Shell, ...]]) -> Printability:
     plates = [[(shell.name, shell.vertices, shell.faces) for shell in plate] for plate in printed.values()]
-    found = printability(side_by_side(plates), assembly.solution.thickness.gap)
+    found = printability(
+        side_by_side(plates), assembly.solution.thickness.gap, [body.name for body in assembly.propped]
+    )
     if found.errors:
         raise FabricationError("this would not print:\n  " + "\n  ".join(found.errors))
     return found

@@ -21,6 +21,8 @@ NECK, SPACING, BITE = 0.8, 5.0, 0.15
 """Width of a neck, how far apart necks stand, and how far they reach into part and prop, mm."""
 TALL = 8.0
 """A part higher than this over the bed gets no prop: slicers build better towers, mm."""
+ASIDE = 1.25
+"""How far a prop keeps away from other parts, in clearances: what is tidied may move a little."""
 LEAST = 0.5
 """A part lower than this over the bed gets none either: it is not worth the breaking, mm."""
 
@@ -79,7 +81,7 @@ def _prop(body: Solid, low: float, others: list[Solid], gap: float) -> Solid | N
     """The prop of a part whose lowest face is `low` above the bed; None where others stand below all of it."""
     sole = body.slice(low + ON_BED)
     for other in others:
-        sole = sole - solids.grown(other.trim_by_plane((0.0, 0.0, -1.0), -low).project(), gap)
+        sole = sole - solids.grown(other.trim_by_plane((0.0, 0.0, -1.0), -low).project(), ASIDE * gap)
     made: list[Solid] = []
     for face in sole.decompose():
         if face.area() > NECK**2:

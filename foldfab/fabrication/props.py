@@ -58,7 +58,8 @@ def propped(made: dict[str, Solid], poses: dict[str, Array], up: Array, gap: flo
     for name in sorted(made):
         if not LEAST < low[name] <= TALL:
             continue
-        others = [body for other, body in sorted(placed.items()) if other != name and low[other] < low[name] - ON_BED]
+        reach = low[name] + gap
+        others = [body for other, body in sorted(placed.items()) if other != name and low[other] < reach]
         prop = _prop(placed[name], low[name], others, gap)
         whole = solids.union([placed[name], prop]) if prop is not None else placed[name]
         if prop is not None and solids.pieces(whole) == 1:
@@ -81,7 +82,7 @@ def _prop(body: Solid, low: float, others: list[Solid], gap: float) -> Solid | N
     """The prop of a part whose lowest face is `low` above the bed; None where others stand below all of it."""
     sole = body.slice(low + ON_BED)
     for other in others:
-        sole = sole - solids.grown(other.trim_by_plane((0.0, 0.0, -1.0), -low).project(), ASIDE * gap)
+        sole = sole - solids.grown(other.trim_by_plane((0.0, 0.0, -1.0), -low - gap).project(), ASIDE * gap)
     made: list[Solid] = []
     for face in sole.decompose():
         if face.area() > NECK**2:

@@ -37,11 +37,11 @@ def stopped(assembly: Assembly, made: dict[str, Solid], ramps: Mapping[str, list
     latches: dict[str, Latch | None] = {}
     is_latched = assembly.solution.scaffold.recipe.print.latch
     for chain, hinge, name in _hinges(assembly):
-        ways = (
-            (False, stops(assembly.solution, chain, hinge, in_open=assembly.posture in ("open", "plate"))),
-            # On edge a rest would begin in the air.
-            (True, rests(assembly.solution, chain, hinge) if assembly.posture != "edge" else ()),
-        )
+        ends = stops(assembly.solution, chain, hinge, in_open=assembly.posture in ("open", "plate"))
+        ways = ((False, ends), (True, rests(assembly.solution, chain, hinge)))
+        if assembly.posture == "edge":
+            # There, a tongue or a rest would begin in the air.
+            ways = ((False, (stop for stop in ends if stop.kind != "tongue")), (True, iter(())))
         for is_folded, candidates in ways:
             best = _best(trial, name, candidates, is_folded)
             if best is not None:

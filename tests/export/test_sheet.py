@@ -24,6 +24,7 @@ FIELDS = [
     "clearance_mm",
     "clearance_from",
     "printer",
+    "propped",
     "print_files",
     "size_open_mm",
     "size_folded_mm",

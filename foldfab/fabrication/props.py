@@ -63,7 +63,7 @@ def propped(made: dict[str, Solid], poses: dict[str, Array], up: Array, gap: flo
         prop = _prop(placed[name], low[name], others, gap)
         whole = solids.union([placed[name], prop]) if prop is not None else placed[name]
         if prop is not None and solids.pieces(whole) == 1:
-            found[name] = solids.tidied(solids.moved(whole, _inverse(stand[name])))
+            found[name] = solids.merged(solids.moved(whole, _inverse(stand[name])))
     return found
 
 

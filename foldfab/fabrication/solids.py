@@ -124,6 +124,11 @@ def tidied(body: Solid) -> Solid:
     return tidy
 
 
+def merged(body: Solid) -> Solid:
+    """The body with facets of one plane merged, wherever they come from; nothing moves by more than the least detail."""
+    return checked(body.as_original().simplify(SLIVERS[0]))
+
+
 def stays_closed(body: Solid) -> bool:
     """Whether each edge still belongs to two triangles when vertices are welded on the grid of a 32-bit file.
 

@@ -36,7 +36,12 @@ _OPTIONS: tuple[tuple[str, str, str], ...] = (
     ("--collisions", "C", "swept: shapes that meet in time; or regions: the paper's own test"),
     ("--time-limit", "SECONDS", "of work on an ordinary machine, up to 3600"),
 )
-_SWITCHES = ("slanting", "stay_in_box", "symmetry", "own_thickness")
+_SWITCHES = ("slanting", "stay_in_box", "symmetry", "own_thickness", "split_shells")
+_SHAPES = (
+    ("--units", "U", "of a file of shapes: mm, cm, m or in; what it states, or a guess, where missing"),
+    ("--up", "AXIS", "that points up in a file of shapes: x, y or z; its format's where missing"),
+    ("--smallest", "MM", "bodies no longer than this are hardware, left out (2 %% of the furniture's longest side)"),
+)
 _SLICER = "--slicer"
 _REPEATED = (("--rigid", "NAME", "a part that must not get a hinge in its middle; may be given again for others"),)
 
@@ -156,6 +161,13 @@ def _advised(recipe: Recipe, progress: _Progress, solve: Callable[[], Any]) -> A
         raise
 
 
+def _recipe(arguments: argparse.Namespace) -> int:
+    from foldfab.recipe.write import as_text
+
+    sys.stdout.write(as_text(_load(arguments, _Progress(arguments.quiet))))
+    return 0
+
+
 def _check(arguments: argparse.Namespace) -> int:
     from foldfab import pipeline
 
@@ -197,7 +209,11 @@ def _load(arguments: argparse.Namespace, progress: _Progress) -> Recipe:
     from foldfab import pipeline
 
     overrides: dict[str, Any] = {name: getattr(arguments, name) for name in (*_option_names(), *_SWITCHES)}
-    return pipeline.load(arguments.recipe, **{key: value for key, value in overrides.items() if value is not None})
+    recipe = pipeline.load(arguments.recipe, **{key: value for key, value in overrides.items() if value is not None})
+    progress.done()
+    for note in () if arguments.quiet else recipe.notes:
+        print(f"note: {note}", file=sys.stderr)
+    return recipe
 
 
 _CLEAR = "\r\033[K"
@@ -236,8 +252,11 @@ def _parser() -> argparse.ArgumentParser:
     folding.add_argument(
         "--verify", action="store_true", help="try the fold out at every moment, apart from the search"
     )
-    for command, quiet in ((making, "show no progress and no summary"), (folding, "show no progress")):
-        command.add_argument("recipe", metavar="RECIPE", help="a .json file, or the name of a shipped recipe")
+    understanding = _command(commands, "recipe", _recipe, "write the recipe that a file is understood as")
+    quieter = ((making, "show no progress and no summary"), (folding, "show no progress"), (understanding, "no notes"))
+    for command, quiet in quieter:
+        what = "a recipe (.json) or its name, a STEP, GLB, glTF, OBJ, 3MF or STL file, or a folder of STL files"
+        command.add_argument("recipe", metavar="FILE", help=what)
         command.add_argument("-q", "--quiet", action="store_true", help=quiet)
         _add_options(command)
     checking = _command(commands, "check", _check, "inspect a print folder from its files alone")
@@ -273,6 +292,11 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
         group.add_argument(option, metavar=metavar, help=text)
     for option, metavar, text in _REPEATED:
         group.add_argument(option, metavar=metavar, action="append", help=text)
+    shapes = parser.add_argument_group("how files of shapes are read")
+    for option, metavar, text in _SHAPES:
+        shapes.add_argument(option, metavar=metavar, help=text, type=float if metavar == "MM" else str)
+    shells = "shells of one body that do not touch are parts of their own"
+    shapes.add_argument("--split-shells", action="store_true", default=None, help=shells)
     group.add_argument("--no-slanting", dest="slanting", action="store_false", default=None, help="fold in place only")
     group.add_argument("--stay-in-box", action="store_true", default=None, help="stay within the bounding box")
     group.add_argument("--symmetry", action="store_true", default=None, help="treat mirrored parts alike")
@@ -303,7 +327,7 @@ def _joined(argv: Sequence[str]) -> list[str]:
 
     `--slicer` alone is tied to nothing: argparse would take the folder behind it for its path.
     """
-    valued = {option for option, _, _ in (*_OPTIONS, *_REPEATED)}
+    valued = {option for option, _, _ in (*_OPTIONS, *_REPEATED, *_SHAPES)}
     arguments, left = list[str](), iter(argv)
     for argument in left:
         value = next(left, None) if argument in valued else "" if argument == _SLICER else None
@@ -312,7 +336,7 @@ def _joined(argv: Sequence[str]) -> list[str]:
 
 
 def _option_names() -> tuple[str, ...]:
-    return tuple(option[2:].replace("-", "_") for option, _, _ in (*_OPTIONS, *_REPEATED))
+    return tuple(option[2:].replace("-", "_") for option, _, _ in (*_OPTIONS, *_REPEATED, *_SHAPES))
 
 
 def _print_json(facts: dict[str, Any]) -> None:

@@ -59,7 +59,7 @@ class Pipeline(types.ModuleType):
 
     def _result(self, name: str) -> Any:
         return {
-            "load": types.SimpleNamespace(name="bench", about="A bench."),
+            "load": types.SimpleNamespace(name="bench", about="A bench.", notes=()),
             "alternatives": ("one", "two"),
             "fabricate": types.SimpleNamespace(findings=self.findings),
             "check": types.SimpleNamespace(rows=self.rows, ok=all(row.ok for row in self.rows)),

@@ -83,10 +83,12 @@ def _labelled(shape: build123d.Shape, source: str) -> Iterator[Placed]:
     while pending:
         node, outer, depth, above = pending.pop()
         check_depth(source, depth)
+        if node.is_null:
+            continue
         name = above if is_nameless(node.label or "") else node.label
         inner = outer * node.location
         pending += [(child, inner, depth + 1, name) for child in reversed(node.children)]
-        if not node.children and node:
+        if not node.children:
             yield name, node.moved(outer).wrapped
 
 
@@ -154,12 +156,17 @@ def _product(tool: Any, label: Any) -> Any:
 
 
 def _name(label: Any) -> str:
+    """The name of a label; where each byte of its UTF-8 was taken for a letter (build123d), mended."""
     from OCP.TDataStd import TDataStd_Name
 
     name = TDataStd_Name()
     if not label.FindAttribute(TDataStd_Name.GetID_s(), name):
         return ""
-    return str(name.Get().ToExtString())
+    text = str(name.Get().ToExtString())
+    try:
+        return text.encode("latin-1").decode("utf-8")
+    except UnicodeError:
+        return text
 
 
 def _solids(shape: Any) -> Iterator[Any]:

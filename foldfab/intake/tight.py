@@ -15,7 +15,7 @@ from foldfab.geometry.arrays import Array
 
 TIE = 0.02
 """A box may be this share larger than the least to follow the furniture's axes: 0.04° for a board of 18 × 500 mm."""
-MOST_FACES = 48
+MOST_FACES = 32
 """Directions that are tried for a side of the box, those of the largest faces of the hull."""
 FLAT = 1e-6
 """Points that reach less far than this share of their longest reach make a sheet or a line."""

@@ -51,7 +51,8 @@ def entry(path: Path, holder: JsonObject, key: str, kind: type[Kind]) -> Kind:
 def floats(buffers: Buffers, index: Any) -> Array:
     """(n, 3) coordinates of an accessor, quantised ones as what they stand for."""
     accessor, kind = _accessor(buffers, index, "VEC3")
-    values: Array = _values(buffers, accessor, kind, 3).astype(np.float64)
+    with np.errstate(invalid="ignore"):
+        values: Array = _values(buffers, accessor, kind, 3).astype(np.float64)
     if accessor.get("normalized") and kind != _FLOAT:
         values = np.maximum(values / np.iinfo(_TYPES[kind]).max, -1.0)
     return values

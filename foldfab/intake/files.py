@@ -52,6 +52,9 @@ def _reader(name: str) -> Callable[[Path], Shapes]:
 def _check_content(path: Path, name: str) -> None:
     """Raises: RecipeError: the file begins like one of another format."""
     try:
+        # A pipe would never end.
+        if not path.is_file():
+            return
         with path.open("rb") as file:
             head = file.read(_SNIFFED)
     except (OSError, ValueError):

@@ -15,7 +15,7 @@ import numpy as np
 from foldfab.geometry.arrays import Array, Indices
 from foldfab.intake.accessors import Buffers, JsonObject, entry, floats, indices
 from foldfab.intake.limits import check_bodies, check_depth, check_nodes, check_triangles, content, fail
-from foldfab.intake.meshes import body, joined, placed
+from foldfab.intake.meshes import body, joined, placed, product
 from foldfab.intake.model import Body, Shapes
 from foldfab.recipe.model import Mesh
 
@@ -102,7 +102,7 @@ def _placements(path: Path, document: JsonObject) -> list[tuple[str, int, Array]
             fail(path, "stands in the tree twice, or within itself; the file is damaged", f"nodes[{index}]")
         seen.add(index)
         node = _at(path, nodes, index, "nodes")
-        matrix = outer @ _matrix(path, node, index)
+        matrix = product(outer, _matrix(path, node, index))
         name = str(node.get("name") or "")
         if "mesh" in node:
             mesh = node["mesh"]

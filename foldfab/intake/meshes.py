@@ -38,6 +38,13 @@ def body(path: Path | str, name: str, vertices: Array, faces: Indices) -> Body:
     return Body(name, Mesh(vertices[used], (np.cumsum(used) - 1)[faces]))
 
 
+def product(outer: Array, inner: Array) -> Array:
+    """The matrix (4, 4) of both; without finite numbers where they are too large together, which `body` refuses."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        found: Array = outer @ inner
+    return found
+
+
 def placed(mesh: Mesh, matrix: Array) -> Mesh:
     """The mesh under an affine (4, 4) matrix that acts on columns."""
     if (matrix == np.eye(4)).all():

@@ -45,7 +45,7 @@ def read(path: Path) -> Shapes:
             elif word in (b"o", b"g"):
                 thing, group = (rest.strip(), b"") if word == b"o" else (thing, rest.strip())
                 faces = found[thing, group]
-        except ValueError as error:
+        except (ValueError, OverflowError) as error:
             fail(path, f"{error}; the file is damaged", f"line {number}")
         if not number % _EVERY:
             _count(path, len(found), triangles, len(places) // 3)
@@ -92,8 +92,11 @@ def _fan(rest: bytes, count: int, faces: array[int]) -> int:
     corners = [int(word.split(b"/", 1)[0]) for word in rest.split()]
     if len(corners) < 3:
         raise ValueError("a face has fewer than three corners")
+    if len(corners) == 3 and min(corners) > 0:
+        faces.extend((corners[0] - 1, corners[1] - 1, corners[2] - 1))
+        return 1
     places = [corner - 1 if corner > 0 else count + corner for corner in corners]
-    if 0 in corners or min(places) < 0 or max(places) >= 1 << 40:
+    if 0 in corners or min(places) < 0:
         raise ValueError("a face names a vertex that is not there")
     first = places[0]
     for second, third in pairwise(places[1:]):

@@ -65,7 +65,9 @@ def _binary(path: Path, data: bytes, count: int) -> tuple[Body, ...]:
     if not count:
         fail(path, "holds no triangles")
     corners = np.frombuffer(data, _TRIANGLE, count, _HEAD)["corners"]
-    return (_soup(path, "", corners.reshape(-1, 3).astype(np.float64)),)
+    # A signalling NaN is told of when it is cast; which vertex it is, is said below.
+    with np.errstate(invalid="ignore"):
+        return (_soup(path, "", corners.reshape(-1, 3).astype(np.float64)),)
 
 
 def _text(path: Path, data: bytes) -> tuple[Body, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import struct
 import zipfile
 import zlib
 from dataclasses import dataclass
@@ -21,13 +22,17 @@ from foldfab.intake.limits import (
     content,
     fail,
 )
-from foldfab.intake.meshes import body, placed
+from foldfab.intake.meshes import body, placed, product
 from foldfab.intake.model import Body, Shapes
 from foldfab.intake.threemf_xml import ModelFile, Object, Use, parse
 from foldfab.recipe.problems import shown
 
 _START = "3D/3dmodel.model"
 """Where the model lies by custom, whatever its relations say."""
+_UNREADABLE = (
+    zipfile.BadZipFile, zlib.error, struct.error, EOFError, NotImplementedError, RuntimeError, OSError, ValueError,
+)  # fmt: skip
+"""What `zipfile` raises over archives that are damaged or encrypted."""
 _TINY = 100_000
 """Bytes unpacked that are let through whatever their ratio: little text packs well."""
 MILLIMETRES = {"micron": 1e-3, "millimeter": 1.0, "centimeter": 10.0, "inch": 25.4, "foot": 304.8, "meter": 1000.0}
@@ -59,7 +64,7 @@ def read(path: Path) -> Shapes:
             main = _start(path, archive)
             model = files.model(main)
             bodies = _bodies(path, files, main)
-    except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, OSError) as error:
+    except _UNREADABLE as error:
         fail(path, f"is no 3MF file, or damaged: it cannot be unpacked ({str(error)[:80]})")
     if model.unit not in MILLIMETRES:
         fail(path, f"should be one of {', '.join(MILLIMETRES)}, not {shown(model.unit)}", "model.unit")
@@ -144,7 +149,7 @@ def _shown(path: Path, files: _Files, place: _Place) -> tuple[Object, str, Array
         fail(path, "names an object that is not there; the file is damaged", f"object {shown(place.use.object)}")
     if (file, place.use.object) in place.path:
         fail(path, "is a component of itself; the file is damaged", f"object {shown(place.use.object)}")
-    return thing, file, place.outer @ place.use.matrix
+    return thing, file, product(place.outer, place.use.matrix)
 
 
 def _unused(model: ModelFile) -> tuple[Use, ...]:

@@ -1,8 +1,9 @@
 """Tight oriented boxes of points: of least volume, and the same for parts that are alike.
 
 A box of least volume lies flush with hull edges on two sides at least (O'Rourke 1985); candidates here are those flush
-with one of the largest faces of the hull, turned by rotating calipers. Where one along the furniture's axes is all but
-as small it is taken instead: symmetric and round parts have many least boxes, and a file's noise must not choose.
+with one of the largest faces of the hull, turned by rotating calipers, then about all their axes: the least for parts
+with flat sides, and within some percent of it for lumps. Where one along the furniture's axes is all but as small it is
+taken instead: symmetric and round parts have many least boxes, and a file's noise must not choose.
 """
 
 from __future__ import annotations
@@ -15,16 +16,21 @@ from foldfab.geometry.arrays import Array
 
 TIE = 0.02
 """A box may be this share larger than the least to follow the furniture's axes: 0.04° for a board of 18 × 500 mm."""
-MOST_FACES = 32
+MOST_FACES = 24
 """Directions that are tried for a side of the box, those of the largest faces of the hull."""
 FLAT = 1e-6
 """Points that reach less far than this share of their longest reach make a sheet or a line."""
 _SAME_NORMAL = 4
 """Digits to which normals of one side of a hull agree."""
-_FEW = 1500
-"""Points of a hull that are looked at for candidates; the box itself contains all."""
+_FEW = 300
+"""Corners of a hull that are looked at for candidates, or as many directions in which they stick out most; the box
+itself contains all."""
 _MOST_FRAMES = 12
 """Frames of parts that are tried as the furniture's, those of the largest."""
+_STARTS, _ROUNDS, _WORTHWHILE = 2, 4, 1e-3
+"""Boxes that are made smaller by turning, turns of each at most, and the share that a turn has to spare."""
+_MANY = 30_000
+"""Of more points only some make the principal axes."""
 _PARALLEL = 1e-9
 """Directions that differ by less, in every entry, are one."""
 
@@ -54,11 +60,14 @@ def hull(points: Array) -> tuple[Array, Array]:
 
 
 def least(corners: Array, normals: Array) -> Frame:
-    """The axes of the smallest box around the corners (k, 3) of a hull that is flush with one of its sides."""
-    few = corners if len(corners) <= _FEW else corners[np.linspace(0, len(corners) - 1, _FEW).astype(int)]
+    """The axes of the smallest box around the corners (k, 3) of a hull with these sides that is found.
+
+    From boxes flush with a side, turning goes on about each axis as long as it helps.
+    """
+    few = corners if len(corners) <= _FEW else corners[_outermost(corners, normals)]
     frames = [_turned(few, normal) for normal in normals] or [_principal(corners)[0]]
-    frames.append(np.eye(3))
-    return min(frames, key=lambda frame: volume(corners, frame))
+    frames = sorted([*frames, _principal(corners)[0], np.eye(3)], key=lambda frame: volume(corners, frame))
+    return min((_refined(few, frame) for frame in frames[:_STARTS]), key=lambda frame: volume(corners, frame))
 
 
 def settled(corners: Array, smallest: Frame, main: Frame) -> Frame:
@@ -131,7 +140,7 @@ def _held(hulls: list[Array], volumes: list[float], main: Frame) -> float:
 
 def _principal(points: Array) -> tuple[Frame, Array]:
     """Right-handed principal axes of the points, and how far they reach along each, longest first."""
-    few = points if len(points) <= 20 * _FEW else points[:: len(points) // (20 * _FEW)]
+    few = points if len(points) <= _MANY else points[:: len(points) // _MANY]
     centred = few - few.mean(0)
     axes = np.linalg.eigh(centred.T @ centred)[1].T[::-1]
     reach = np.ptp(points @ axes.T, axis=0)
@@ -172,6 +181,26 @@ def _turned(corners: Array, normal: Array) -> Frame:
     best = angles[int(np.argmin(np.round(areas / max(areas.max(), 1e-300), 12)))]
     along = np.cos(best) * first + np.sin(best) * second
     return np.array([along, np.cross(normal, along), normal])
+
+
+def _outermost(corners: Array, normals: Array) -> Array:
+    """(f,) the corners that lie outermost in some direction: across a side, or one of many evenly spread."""
+    turn = np.pi * (1 + 5**0.5) * np.arange(_FEW)
+    height = 1 - (2 * np.arange(_FEW) + 1) / _FEW
+    across = np.sqrt(1 - height**2)
+    spread = np.stack([across * np.cos(turn), across * np.sin(turn), height], axis=1)
+    along = corners @ np.concatenate([spread, normals, -normals]).T
+    return np.unique(np.argmax(along / np.ptp(corners, axis=0).max(), axis=0))
+
+
+def _refined(corners: Array, frame: Frame) -> Frame:
+    """The axes of a box that turning about none of its axes makes smaller."""
+    for _ in range(_ROUNDS):
+        turned = min((_turned(corners, axis) for axis in frame), key=lambda found: volume(corners, found))
+        if volume(corners, turned) >= (1 - _WORTHWHILE) * volume(corners, frame):
+            break
+        frame = turned
+    return frame
 
 
 def _upright(axis: Array, other: Array) -> Frame | None:

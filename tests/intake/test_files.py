@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -44,6 +45,12 @@ def test_what_is_not_what_it_says(tmp_path: Path, name: str, content: bytes, say
     with pytest.raises(RecipeError) as caught:
         shapes(tmp_path / name)
     assert says in str(caught.value)
+
+
+def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "a.obj")
+    with pytest.raises(RecipeError, match="not a plain file"):
+        shapes(tmp_path / "a.obj")
 
 
 def test_what_is_not_there(tmp_path: Path) -> None:

@@ -169,6 +169,12 @@ def test_a_deep_tree(tmp_path: Path) -> None:
         read(written(tmp_path, DOCUMENT | {"nodes": nodes, "scenes": [{"nodes": [0]}]}))
 
 
+def test_scales_that_grow_beyond_numbers(tmp_path: Path) -> None:
+    nodes: list[Any] = [{"children": [index + 1], "scale": [1e11, 1e11, 1e11]} for index in range(40)] + [{"mesh": 0}]
+    with pytest.raises(RecipeError, match="no place for furniture"):
+        read(written(tmp_path, DOCUMENT | {"nodes": nodes, "scenes": [{"nodes": [0]}]}))
+
+
 def test_copies_count(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     nodes = [{"mesh": 0} for _ in range(100)]
     file = written(tmp_path, DOCUMENT | {"nodes": nodes, "scenes": [{"nodes": list(range(100))}]})

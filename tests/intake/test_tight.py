@@ -41,15 +41,14 @@ def test_a_board_that_leans_any_way_keeps_its_size(a: float, b: float, c: float)
     assert np.linalg.det(found) > 0
 
 
-@given(st.integers(0, 10_000))
-@settings(max_examples=30, deadline=None)
+@pytest.mark.parametrize("seed", range(30))
 def test_no_turned_box_is_much_smaller(seed: int) -> None:
     random = np.random.default_rng(seed)
     points = random.normal(size=(40, 3)) * (10, 4, 1)
     corners, normals = hull(points)
     smallest = volume(corners, least(corners, normals))
     tried = [volume(corners, turned(*angles)) for angles in random.uniform(-3, 3, (200, 3))]
-    assert smallest <= min(tried) * (1 + 1e-9)
+    assert smallest <= min(tried) * (1 + TIE)
 
 
 @given(angles)

@@ -29,7 +29,12 @@ _OPTIONS: tuple[tuple[str, str, str], ...] = (
     ("--collisions", "C", "swept: shapes that meet in time; or regions: the paper's own test"),
     ("--time-limit", "SECONDS", "of work on an ordinary machine, up to 3600"),
 )
-SWITCHES = ("slanting", "stay_in_box", "symmetry", "own_thickness", "latch")
+SWITCHES = ("slanting", "stay_in_box", "symmetry", "own_thickness", "latch", "split_shells")
+_SHAPES = (
+    ("--units", "U", "of a file of shapes: mm, cm, m or in; what it states, or a guess, where missing"),
+    ("--up", "AXIS", "that points up in a file of shapes: x, y or z; its format's where missing"),
+    ("--smallest", "MM", "bodies no longer than this are hardware, left out (2 %% of the furniture's longest side)"),
+)
 _SLICER = "--slicer"
 _REPEATED = (("--rigid", "NAME", "a part that must not get a hinge in its middle; may be given again for others"),)
 
@@ -52,9 +57,11 @@ def parser(run: Mapping[str, Run], version: type[argparse.Action]) -> argparse.A
         "--verify", action="store_true", help="try the fold out at every moment, apart from the search"
     )
     comparing = _command(commands, run, "postures", "what each posture takes, by the slicer")
+    understanding = _command(commands, run, "recipe", "write the recipe that a file is understood as")
     told = ((comparing, "show no progress"), (making, "show no progress and no summary"), (folding, "show no progress"))
-    for command, quiet in told:
-        command.add_argument("recipe", metavar="RECIPE", help="a .json file, or the name of a shipped recipe")
+    for command, quiet in (*told, (understanding, "no notes")):
+        what = "a recipe (.json) or its name, a STEP, GLB, glTF, OBJ, 3MF or STL file, or a folder of STL files"
+        command.add_argument("recipe", metavar="FILE", help=what)
         command.add_argument("-q", "--quiet", action="store_true", help=quiet)
         _add_options(command)
     _add_looking(commands, run)
@@ -104,6 +111,11 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
         group.add_argument(option, metavar=metavar, help=text)
     for option, metavar, text in _REPEATED:
         group.add_argument(option, metavar=metavar, action="append", help=text)
+    shapes = parser.add_argument_group("how files of shapes are read")
+    for option, metavar, text in _SHAPES:
+        shapes.add_argument(option, metavar=metavar, help=text, type=float if metavar == "MM" else str)
+    shells = "shells of one body that do not touch are parts of their own"
+    shapes.add_argument("--split-shells", action="store_true", default=None, help=shells)
     group.add_argument("--no-slanting", dest="slanting", action="store_false", default=None, help="fold in place only")
     group.add_argument("--stay-in-box", action="store_true", default=None, help="stay within the bounding box")
     group.add_argument("--latch", action="store_true", default=None, help="detents that hold base hinges open")
@@ -122,7 +134,7 @@ def joined(argv: Sequence[str]) -> list[str]:
 
     `--slicer` alone is tied to nothing: argparse would take the folder behind it for its path.
     """
-    valued = {option for option, _, _ in (*_OPTIONS, *_REPEATED)}
+    valued = {option for option, _, _ in (*_OPTIONS, *_REPEATED, *_SHAPES)}
     arguments, left = list[str](), iter(argv)
     for argument in left:
         value = next(left, None) if argument in valued else "" if argument == _SLICER else None
@@ -132,4 +144,4 @@ def joined(argv: Sequence[str]) -> list[str]:
 
 def option_names() -> tuple[str, ...]:
     """The options that have a value, as Python names."""
-    return tuple(option[2:].replace("-", "_") for option, _, _ in (*_OPTIONS, *_REPEATED))
+    return tuple(option[2:].replace("-", "_") for option, _, _ in (*_OPTIONS, *_REPEATED, *_SHAPES))

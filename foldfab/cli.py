@@ -140,6 +140,13 @@ def _advised(recipe: Recipe, progress: _Progress, solve: Callable[[], Any]) -> A
         raise
 
 
+def _recipe(arguments: argparse.Namespace) -> int:
+    from foldfab.recipe.write import as_text
+
+    sys.stdout.write(as_text(_load(arguments, _Progress(arguments.quiet))))
+    return 0
+
+
 def _check(arguments: argparse.Namespace) -> int:
     from foldfab import pipeline
 
@@ -221,7 +228,11 @@ def _load(arguments: argparse.Namespace, progress: _Progress) -> Recipe:
     from foldfab import pipeline
 
     overrides: dict[str, Any] = {name: getattr(arguments, name) for name in (*option_names(), *SWITCHES)}
-    return pipeline.load(arguments.recipe, **{key: value for key, value in overrides.items() if value is not None})
+    recipe = pipeline.load(arguments.recipe, **{key: value for key, value in overrides.items() if value is not None})
+    progress.done()
+    for note in () if arguments.quiet else recipe.notes:
+        print(f"note: {note}", file=sys.stderr)
+    return recipe
 
 
 _CLEAR = "\r\033[K"
@@ -285,6 +296,7 @@ def _show_any_letter(stream: object) -> None:
 _COMMANDS: dict[str, Run] = {
     "print": _print,
     "fold": _fold,
+    "recipe": _recipe,
     "postures": _postures,
     "check": _check,
     "recipes": _recipes,

@@ -39,18 +39,31 @@ SCALE_ROUNDS = 6
 """How often the scale of a print is reduced until it fits the bed."""
 
 
-def load(text: str, **overrides: Any) -> Recipe:
-    """The recipe in a file, or among those that foldfab ships, with options of the command line put over it.
+def load(
+    source: str | Path | build123d.Shape, *, units: str | None = None, up: str | None = None,
+    split_shells: bool = False, smallest: float | None = None, **overrides: Any,
+) -> Recipe:  # fmt: skip
+    """The furniture in a recipe, in a file of shapes, or in a build123d object, with options put over it.
+
+    Args:
+        source: a recipe's file or one that foldfab ships; a STEP, GLB, glTF, OBJ, 3MF or STL file; a folder of
+            STL files; or a build123d object.
+        units: of a file of shapes, "mm", "cm", "m" or "in"; what it states, or a guess that is noted, where missing.
+        up: the axis of a file of shapes that points up, "x", "y" or "z"; that of its format where missing.
+        split_shells: whether shells of one body that do not touch are parts of their own.
+        smallest: mm; bodies no longer than this are hardware and left out.
+        overrides: options of the command line, by name.
 
     Raises:
         RecipeError: every problem with the file or the options, each with its place.
+        MissingLibraryError: a library that the file's format needs is absent.
     """
+    from foldfab.intake.door import load as opened
+    from foldfab.intake.model import Wishes
     from foldfab.recipe.clearance import calibrated
     from foldfab.recipe.edit import override
-    from foldfab.recipe.find import find
-    from foldfab.recipe.read import read
 
-    recipe = read(find(text))
+    recipe = opened(source, Wishes(units=units, up=up, split_shells=split_shells, smallest=smallest))
     return calibrated(override(recipe, **overrides) if overrides else recipe)
 
 

@@ -59,7 +59,9 @@ class Pipeline(types.ModuleType):
 
     def _result(self, name: str) -> Any:
         return {
-            "load": types.SimpleNamespace(name="bench", about="A bench.", print=types.SimpleNamespace(posture="open")),
+            "load": types.SimpleNamespace(
+                name="bench", about="A bench.", notes=(), print=types.SimpleNamespace(posture="open")
+            ),
             "alternatives": ("one", "two"),
             "fabricate": types.SimpleNamespace(findings=self.findings),
             "check": types.SimpleNamespace(rows=self.rows, ok=all(row.ok for row in self.rows)),
@@ -345,3 +347,35 @@ def test_auto_is_settled_before_it_is_folded(monkeypatch: pytest.MonkeyPatch) ->
     recipe = types.SimpleNamespace(print=types.SimpleNamespace(posture="auto"))
     monkeypatch.setattr(postures, "settled", lambda recipe, tell: "settled")
     assert cli._settled(recipe, cli._Progress(is_quiet=True)) == "settled"  # type: ignore[arg-type, comparison-overlap]
+
+
+def test_a_recipe_is_written_as_it_was_understood(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    file = tmp_path / "leg.obj"
+    file.write_text(
+        "g leg\nv 0 0 0\nv 40 0 0\nv 0 30 0\nv 0 0 700\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 3 4\n", encoding="utf-8"
+    )
+    assert cli.main(["recipe", str(file), "--units", "cm"]) == 0
+    out, err = capsys.readouterr()
+    assert json.loads(out)["parts"][0]["box"]["size"] == [400, 300, 7000]
+    assert err.startswith("note: no boxes, taken as their boxes, which are off by: leg ")
+    assert cli.main(["recipe", str(file), "-q"]) == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_a_recipe_of_boxes_is_read_without_heavy_libraries() -> None:
+    heavy = ("build123d", "OCP", "trimesh", "manifold3d", "scipy", "lib3mf")
+    code = f"""
+import sys
+from foldfab.cli import main
+main(["recipe", "bench"])
+print([name for name in {heavy} if name in sys.modules])
+"""
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.splitlines()[-1] == "[]"
+
+
+def test_a_file_that_is_not_what_it_says_is_bad_input(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    (tmp_path / "chair.step").write_bytes(b"glTF")
+    assert cli.main(["print", str(tmp_path / "chair.step"), "-o", str(tmp_path / "out")]) == 2
+    assert "rename it to .glb" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()

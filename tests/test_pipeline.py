@@ -47,6 +47,32 @@ def test_a_composite_is_saved_loaded_and_folded(tmp_path: Path) -> None:
     assert len(solution.chains) == 9 and len(solution.steps) == 3
 
 
+def test_the_same_table_from_meshes_folds_the_same(tmp_path: Path) -> None:
+    corners = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+    quads = [(1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4)]
+    lines = []
+    for index, part in enumerate(TABLE):
+        center, size = part["box"]["center"], part["box"]["size"]
+        lines.append(f"g {part['name']}")
+        lines += [
+            "v " + " ".join(str((c + s * k / 2) / 10) for c, s, k in zip(center, size, corner, strict=True))
+            for corner in corners
+        ]
+        lines += ["f " + " ".join(str(corner + 8 * index) for corner in quad) for quad in quads]
+    (tmp_path / "table.obj").write_text("\n".join(lines), encoding="utf-8")
+    (tmp_path / "boxes.json").write_text(json.dumps({"parts": TABLE}), encoding="utf-8")
+    (tmp_path / "named.json").write_text(json.dumps({"model": "table.obj", "units": "cm"}), encoding="utf-8")
+    meshes = foldfab.load(tmp_path / "table.obj")
+    assert meshes.notes == ("the file states no unit; taken as cm, so that its longest side is 1400 mm (--units)",)
+    solutions = [
+        foldfab.foldabilize(r)
+        for r in (meshes, foldfab.load(tmp_path / "named.json"), foldfab.load(tmp_path / "boxes.json"))
+    ]
+    for solution in solutions:
+        assert solution.cost == solutions[-1].cost
+        assert [m.patch for m in solution.modifications] == [m.patch for m in solutions[-1].modifications]
+
+
 def test_a_scale_of_ones_own_is_kept(tmp_path: Path) -> None:
     made = fabricated(tmp_path, direction="-z", print={"scale": 0.1})
     assert made.solution.scaffold.scale == 0.1

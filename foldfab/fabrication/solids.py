@@ -125,7 +125,7 @@ def tidied(body: Solid) -> Solid:
 
 
 def merged(body: Solid) -> Solid:
-    """The body with facets of one plane merged, wherever they come from; nothing moves by more than the least detail."""
+    """The body with facets of one plane merged, wherever they come from; nothing moves more than the least detail."""
     return checked(body.as_original().simplify(SLIVERS[0]))
 
 

@@ -3,12 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from foldfab.geometry.arrays import Array
 from foldfab.recipe.clearance import profile
-from foldfab.recipe.form import MILLIMETRES, FoldForm, PartForm, PatternForm, PrinterForm, PrintForm, RecipeForm
+from foldfab.recipe.form import (
+    MILLIMETRES,
+    BoxForm,
+    FoldForm,
+    PartForm,
+    PatternForm,
+    PrinterForm,
+    PrintForm,
+    RecipeForm,
+)
 from foldfab.recipe.model import FoldOptions, Part, Pattern, Printer, PrintOptions, Recipe
 from foldfab.recipe.patterns import snapped
 from foldfab.recipe.printers import PRINTERS
@@ -18,18 +28,24 @@ _EXACT = 1e-12
 _QUARTER_TURN = 1e-9
 
 
-def build(form: RecipeForm, name: str, source: str) -> Recipe:
-    """The recipe that a valid form describes."""
-    factor = MILLIMETRES[form.units]
+def build(form: RecipeForm, name: str, source: str, parts: tuple[Part, ...], notes: tuple[str, ...] = ()) -> Recipe:
+    """The recipe that a valid form describes, with the parts that were made of it."""
     return Recipe(
         name=name,
         direction=unit_direction(form.direction),
-        parts=tuple(_part(part, factor, form.fold.shrink_steps) for part in form.parts),
+        parts=parts,
         fold=_fold(form.fold),
         print=build_print(form.print),
         about=form.about,
         source=source,
+        notes=notes,
     )
+
+
+def boxes(form: RecipeForm) -> tuple[Part, ...]:
+    """The parts of a form all of whose parts are boxes."""
+    factor, steps = MILLIMETRES[form.units], form.fold.shrink_steps
+    return tuple(box_part(part, part.box, factor, steps) for part in form.parts if part.box is not None)
 
 
 def unit_direction(direction: str | list[float]) -> Array | None:
@@ -61,17 +77,26 @@ def _is_extreme(vector: list[float]) -> bool:
     return not 1e-100 < max(abs(entry) for entry in vector) < 1e100
 
 
-def _part(form: PartForm, factor: float, steps: int) -> Part:
-    return Part(
+def box_part(form: PartForm, box: BoxForm, factor: float, steps: int) -> Part:
+    """The part that is a box, with its flags; `factor` is the mm of a unit, `steps` the recipe's shrink_steps."""
+    part = Part(
         name=form.name,
-        center=np.array(form.box.center) * factor,
-        size=np.array(form.box.size) * factor,
-        axes=np.eye(3) if form.box.axes is None else rotation(form.box.axes),
-        hingeable=form.hingeable,
-        pin=None if form.pin is None else _pattern(form.pin, steps),
-        forbid=tuple(_pattern(pattern, steps) for pattern in form.forbid),
-        thickness=None if form.thickness is None else float(form.thickness),
+        center=np.array(box.center) * factor,
+        size=np.array(box.size) * factor,
+        axes=np.eye(3) if box.axes is None else rotation(box.axes),
     )
+    return flagged(part, form, steps)
+
+
+def flagged(part: Part, form: PartForm, steps: int) -> Part:
+    """The part with every flag that a form sets."""
+    flags: dict[str, Any] = {
+        "hingeable": form.hingeable,
+        "pin": None if form.pin is None else _pattern(form.pin, steps),
+        "forbid": tuple(_pattern(pattern, steps) for pattern in form.forbid),
+        "thickness": None if form.thickness is None else float(form.thickness),
+    }
+    return replace(part, **{key: value for key, value in flags.items() if key in form.model_fields_set})
 
 
 def _pattern(form: PatternForm, steps: int) -> Pattern:

@@ -73,8 +73,20 @@ def _folder(name: str) -> str:
     return name
 
 
-def _part_name(name: str) -> str:
+def _part_name(name: str, info: ValidationInfo) -> str:
+    """Beside a model it may be a pattern for several names."""
+    globs = (info.context or {}).get("globs", False)
+    _complain(part_name_problem(name.replace("*", "x").replace("?", "x") if globs else name))
+    return name
+
+
+def _merged_name(name: str) -> str:
     _complain(part_name_problem(name))
+    return name
+
+
+def _file(name: str) -> str:
+    _complain(None if name.strip() and not has_control_characters(name) else "should be a file's name")
     return name
 
 
@@ -223,10 +235,19 @@ def _forbiddable(form: PatternForm, info: ValidationInfo) -> PatternForm:
 
 
 class PartForm(Form):
-    """One segment of the furniture."""
+    """One segment of the furniture: a box, a mesh, or, beside a model, flags for the bodies of a name."""
 
-    name: Annotated[str, AfterValidator(_part_name)] = Field(description="Unique in the recipe; becomes a file's name.")
-    box: BoxForm
+    name: Annotated[str, AfterValidator(_part_name)] = Field(
+        description="Unique in the recipe; becomes a file's name. Beside a model, leg* fits all that begin so."
+    )
+    box: BoxForm | None = None
+    mesh: Annotated[str, AfterValidator(_file)] | None = Field(
+        default=None, description="A file of shapes in the recipe's folder that is this part."
+    )
+    ignore: bool = Field(default=False, description="Whether these bodies of the model are left out.")
+    merge: Annotated[str, AfterValidator(_merged_name)] | None = Field(
+        default=None, description="The name of the one part that these bodies of the model become."
+    )
     hingeable: bool = Field(default=True, description="False where no hinge may be inserted in its interior.")
     pin: Annotated[PatternForm, AfterValidator(_pinnable)] | None = Field(
         default=None, description="What its modification has to be like."
@@ -235,6 +256,22 @@ class PartForm(Form):
         default=[], max_length=MOST_PATTERNS, description="What its modification must not be like."
     )
     thickness: Plate | None = Field(default=None, description="Thickness of its plate or panels, mm in print.")
+
+    @model_validator(mode="after")
+    def _is_one_thing(self, info: ValidationInfo) -> PartForm:
+        _complain(self._problem((info.context or {}).get("globs", False)))
+        return self
+
+    def _problem(self, beside_model: bool) -> str | None:
+        """Why its keys do not go together, None where they do."""
+        if self.box is not None and self.mesh is not None:
+            return "has a box and a mesh; keep one"
+        has_shape = self.box is not None or self.mesh is not None
+        if (self.ignore or self.merge is not None) and (has_shape or not beside_model):
+            return '"ignore" and "merge" are for bodies of a "model"; leave them out'
+        if self.ignore and self.merge is not None:
+            return "is ignored and merged; keep one"
+        return part_name_problem(self.name) if has_shape else None
 
 
 class FoldForm(Form):
@@ -326,6 +363,9 @@ class RecipeForm(Form):
     direction: Direction = Field(
         default="auto", description="Folding direction, a named axis or a vector; auto tries all six axes."
     )
-    parts: list[PartForm] = Field(min_length=1, max_length=MOST_PARTS)
+    model: Annotated[str, AfterValidator(_file)] | None = Field(
+        default=None, description="A file of shapes in the recipe's folder; its bodies are parts."
+    )
+    parts: list[PartForm] = Field(default=[], max_length=MOST_PARTS)
     fold: FoldForm = Field(default_factory=FoldForm)
     print: PrintForm = Field(default_factory=PrintForm)

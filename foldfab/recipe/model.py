@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
-from foldfab.geometry.arrays import Array, frozen
+from foldfab.geometry.arrays import Array, Indices, frozen, frozen_indices
 from foldfab.recipe.hinges import HingeKind
 
 Posture = Literal["open", "folded", "edge", "plate"]
@@ -46,6 +46,20 @@ class Pattern:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Mesh:
+    """A surface of triangles, as it stands in a file: neither closed nor oriented for certain."""
+
+    vertices: Array
+    """(n, 3)."""
+    faces: Indices
+    """(m, 3) indices of vertices."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "vertices", frozen(self.vertices, -1, 3))
+        object.__setattr__(self, "faces", frozen_indices(self.faces, -1, 3))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Part:
     """One segment of the furniture, as its tight oriented box."""
 
@@ -65,6 +79,8 @@ class Part:
     """What its modification must not be like."""
     thickness: float | None = None
     """K of its plate or panels, mm in print; None where the print's options decide."""
+    shape: Mesh | None = None
+    """What it looks like, in true mm where it stands; None where it is its box."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "center", frozen(self.center, 3))
@@ -157,6 +173,8 @@ class Recipe:
     """One line: what the furniture is modelled after."""
     source: str = field(default="<memory>")
     """Where it came from, for messages."""
+    notes: tuple[str, ...] = ()
+    """What reading had to suppose or leave out, a sentence each."""
 
     def __post_init__(self) -> None:
         if self.direction is not None:

@@ -42,6 +42,10 @@ EXPECTED = MappingProxyType(
         "direction": 'one of "x", "-x", "y", "-y", "z", "-z", "auto", or three numbers such as [0, 0, -1]',
         "direction[]": "a finite number",
         "parts": f"a list of 1 to {MOST_PARTS} parts",
+        "model": 'the name of a file of shapes such as "chair.step"',
+        "mesh": 'the name of a file of shapes such as "back.obj"',
+        "ignore": "true or false",
+        "merge": "the name of the part that these bodies become",
         "parts[]": 'an object such as {"name": "seat", "box": {"center": [0, 0, 450], "size": [400, 400, 20]}}',
         "box": 'an object such as {"center": [0, 0, 450], "size": [400, 400, 20]}',
         "center": "three numbers",
@@ -103,23 +107,14 @@ FORMS: Mapping[str, type[Form]] = MappingProxyType(
 )
 """By field: the form of the object that it holds."""
 
-_NOT_YET = MappingProxyType(
-    {
-        ("", "model"): "CAD files are not read yet; describe the furniture by parts with a box each",
-        ("parts[]", "mesh"): 'meshes are not read yet; give the part a "box" with "center" and "size"',
-    }
-)
 SLIP = 0.9
 """Keys this alike are the same but for a slip, even where the key belongs elsewhere as well."""
-_STANDS_FOR = MappingProxyType({"parts": "model", "box": "mesh"})
 
 
 def problems_of(error: ValidationError) -> list[Problem]:
     """Every error of a validation as a problem, in the order of the form."""
     found = error.errors(include_url=False)
-    unknown = {detail["loc"] for detail in found if detail["type"] == "extra_forbidden"}
-    told = (detail for detail in found if not _is_echo(detail, unknown))
-    return [Problem(place(_clean(detail)), sentence(detail)) for detail in told]
+    return [Problem(place(_clean(detail)), sentence(detail)) for detail in found]
 
 
 def sentence(detail: ErrorDetails) -> str:
@@ -166,12 +161,6 @@ def shown(value: object) -> str:
     return repr(value)[:40]
 
 
-def _is_echo(detail: ErrorDetails, unknown: set[Location]) -> bool:
-    """Whether a missing field was only given in a form that is not read yet, which is reported by itself."""
-    *parent, field = detail["loc"] or ("",)
-    return detail["type"] == "missing" and (*parent, _STANDS_FOR.get(str(field), field)) in unknown
-
-
 def _clean(detail: ErrorDetails) -> Location:
     """Where it is, without the tags of unions; an unknown key is kept even where it looks like a tag."""
     *inner, last = detail["loc"] or ("",)
@@ -187,8 +176,6 @@ def _field(location: Location) -> str:
 
 
 def _unknown_key(key: str, parent: str) -> str:
-    if (parent, key) in _NOT_YET:
-        return _NOT_YET[parent, key]
     known = keys(FORMS[parent])
     homes = [other or "the top level" for other, form in FORMS.items() if key in keys(form)]
     close = get_close_matches(key.lower(), known, n=1, cutoff=SLIP if homes else 0.6)

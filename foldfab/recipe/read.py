@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from pydantic import ValidationError
 
 from foldfab.errors import Problem, RecipeError
-from foldfab.recipe.build import build
+from foldfab.recipe.build import boxes, build
 from foldfab.recipe.document import load, repeated_keys
 from foldfab.recipe.form import MILLIMETRES, FoldForm, RecipeForm
-from foldfab.recipe.model import Recipe
+from foldfab.recipe.model import Part, Recipe
 from foldfab.recipe.names import folder_name, folder_name_problem, same_name
 from foldfab.recipe.problems import EXPECTED, TOP, problems_of, shown
 
@@ -18,13 +19,22 @@ MOST_PROBLEMS = 500
 """More than these are counted, not listed."""
 
 
-def read(path: Path) -> Recipe:
+PartsOf = Callable[[RecipeForm, Path], tuple[tuple[Part, ...], tuple[str, ...]]]
+"""What makes parts, and notes, of a recipe that names files of shapes: a room above this one."""
+
+
+def read(path: Path, parts_of: PartsOf | None = None) -> Recipe:
     """The recipe in a JSON file; its name is by default the file's, without `.json`.
 
     Raises:
         RecipeError: every problem of the file at once, each with its place.
     """
-    return parse(load(path), str(path), path.stem)
+    source = str(path)
+    form = understood(load(path), source, path.stem)
+    if parts_of is None or not names_files(form):
+        return _of_boxes(form, path.stem, source)
+    parts, notes = parts_of(form, path)
+    return build(form, form.name or path.stem, source, parts, notes)
 
 
 def parse(data: object, source: str, default_name: str) -> Recipe:
@@ -33,20 +43,43 @@ def parse(data: object, source: str, default_name: str) -> Recipe:
     Raises:
         RecipeError: every problem of the data at once, each with its place.
     """
+    return _of_boxes(understood(data, source, default_name), default_name, source)
+
+
+def names_files(form: RecipeForm) -> bool:
+    """Whether some of its parts lie in other files."""
+    return form.model is not None or any(part.mesh is not None for part in form.parts)
+
+
+def understood(data: object, source: str, default_name: str) -> RecipeForm:
+    """The form that JSON data fill in.
+
+    Raises:
+        RecipeError: every problem of the data at once, each with its place.
+    """
     if not isinstance(data, dict):
         raise RecipeError(source, (Problem(TOP, f"should be {EXPECTED['']}, not {shown(data)}"),))
     form, problems = _form(data)
-    problems += repeated_keys(data) + _repeated_names(data.get("parts")) + _default_name(data, default_name)
+    problems += repeated_keys(data) + _missing(data) + _repeated_names(data.get("parts"))
+    problems += _default_name(data, default_name)
     if form is None or problems:
         raise RecipeError(source, _limited(problems))
-    return build(form, form.name or default_name, source)
+    return form
+
+
+def _of_boxes(form: RecipeForm, default_name: str, source: str) -> Recipe:
+    if names_files(form):
+        text = "names a file, which is looked for beside a recipe's file; this is none"
+        raise RecipeError(source, (Problem("parts" if form.model is None else "model", text),))
+    return build(form, form.name or default_name, source, boxes(form))
 
 
 def _form(data: dict[str, object]) -> tuple[RecipeForm | None, list[Problem]]:
     units = data.get("units", "mm")
     factor = MILLIMETRES.get(units, 1.0) if isinstance(units, str) else 1.0
+    context = {"factor": factor, "globs": "model" in data, **_limits(data.get("fold"))}
     try:
-        return RecipeForm.model_validate(data, context={"factor": factor, **_limits(data.get("fold"))}), []
+        return RecipeForm.model_validate(data, context=context), []
     except ValidationError as error:
         return None, problems_of(error)
 
@@ -61,6 +94,20 @@ def _limits(fold: object) -> dict[str, int]:
         except ValidationError:
             continue
     return limits
+
+
+def _missing(data: dict[str, object]) -> list[Problem]:
+    """Without a model there have to be parts, each with a box or a mesh."""
+    if "model" in data:
+        return []
+    parts = data.get("parts")
+    if "parts" not in data:
+        return [Problem("parts", f'is missing; give {EXPECTED["parts"]}, or a "model"')]
+    if parts == []:
+        return [Problem("parts", f"should be {EXPECTED['parts']}, not {shown(parts)}")]
+    listed = enumerate(parts) if isinstance(parts, list) else ()
+    bare = [index for index, part in listed if isinstance(part, dict) and not {"box", "mesh"} & part.keys()]
+    return [Problem(f"parts[{index}].box", f'is missing; give {EXPECTED["box"]}, or a "mesh"') for index in bare]
 
 
 def _repeated_names(parts: object) -> list[Problem]:

@@ -44,7 +44,9 @@ def _brief(part: dict[str, Any]) -> dict[str, Any]:
     """The part without what is so by default."""
     is_level = part["box"]["axes"] == [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
     box = {key: value for key, value in part["box"].items() if key != "axes" or not is_level}
-    return {"name": part["name"], "box": box, **({} if part["hingeable"] else {"hingeable": False})}
+    told = ("name", "box", *(["hingeable"] if part["hingeable"] else []))
+    rest = {key: value for key, value in part.items() if key not in told}
+    return {"name": part["name"], "box": box, **rest}
 
 
 def _line(value: object) -> str:

@@ -54,8 +54,17 @@ BROKEN = [
     (changed("parts", 0, "seat"), "parts[0]", "an object such as"),
     (changed("parts", 0, {"name": "seat"}), "parts[0].box", "is missing"),
     (changed("parts", 0, {"box": STOOL["parts"][0]["box"]}), "parts[0].name", "is missing"),
-    (changed("parts", 0, {"name": "seat", "mesh": "seat.obj"}), "parts[0].mesh", "not read yet"),
-    (changed("model", "stool.step"), "model", "not read yet"),
+    (changed("parts", 0, {"name": "seat", "mesh": "seat.obj"}), "parts", "names a file"),
+    (changed("model", "stool.step"), "model", "names a file"),
+    (changed("model", ""), "model", "should be a file's name"),
+    (changed("parts", 0, "mesh", 5), "parts[0].mesh", "name of a file of shapes"),
+    (changed("parts", 0, "mesh", "a.obj"), "parts[0]", "a box and a mesh"),
+    (changed("parts", 0, "ignore", True), "parts[0]", "for bodies of a"),
+    (changed("parts", 0, "merge", "all"), "parts[0]", "for bodies of a"),
+    (changed("parts", 0, "merge", "a/b"), "parts[0].merge", "'-' instead"),
+    (changed("parts", 0, "name", "leg*"), "parts[0].name", "'-' instead"),
+    ({"model": "a.step", "parts": [{"name": "leg*", "ignore": True, "merge": "x"}]}, "parts[0]", "keep one"),
+    ({"model": "a.step", "parts": [{"name": "leg*", "mesh": "x.obj"}]}, "parts[0]", "'-' instead"),
     (changed("parts", 0, "name", ""), "parts[0].name", "empty"),
     (changed("parts", 0, "name", "  "), "parts[0].name", "empty"),
     (changed("parts", 0, "name", " seat"), "parts[0].name", "blanks"),
@@ -177,8 +186,12 @@ def test_counts_what_is_too_much_to_list() -> None:
     assert "11 more" in found["recipe"]
 
 
-def test_a_mesh_is_not_a_missing_box_too() -> None:
-    assert set(problems(changed("parts", 0, {"name": "seat", "mesh": "a.obj"}))) == {"parts[0].mesh"}
+def test_parts_of_files_come_from_a_room_above(tmp_path: Path) -> None:
+    file = tmp_path / "stool.json"
+    file.write_text('{"model": "stool.step", "parts": [{"name": "leg*", "hingeable": false}]}', encoding="utf-8")
+    part = parse(STOOL, "stool.json", "stool").parts[0]
+    recipe = read(file, lambda form, path: ((part,), (f"{form.model} of {path.name}",)))
+    assert (recipe.name, recipe.parts, recipe.notes) == ("stool", (part,), ("stool.step of stool.json",))
 
 
 def test_defaults() -> None:

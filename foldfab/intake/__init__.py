@@ -1,0 +1,1 @@
+"""Furniture from other programs: files of shapes become a Recipe."""

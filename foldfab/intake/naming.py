@@ -1,0 +1,53 @@
+"""Names from other programs become names of parts: safe as files, unique, and as much like they were as can be."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+
+from foldfab.recipe.names import LONGEST, has_control_characters, part_name_problem, same_name
+
+_FORBIDDEN = re.compile(r'[/\\:*?"<>|]+')
+_NAMELESS = re.compile(r"(solid|compound|shell|shape|=>\[[\d:]*\])?", re.IGNORECASE)
+"""What programs write where a body has no name."""
+NAMELESS = "part"
+
+
+def part_name(text: str) -> str:
+    """A name that a part can have and that resembles `text`."""
+    shown = "".join("-" if has_control_characters(letter) else letter for letter in unicodedata.normalize("NFC", text))
+    name = _FORBIDDEN.sub("-", shown).strip().strip(".").strip()[:LONGEST]
+    while len(name.encode()) > 2 * LONGEST:
+        name = name[:-1]
+    name = name.strip().strip(".").strip()
+    if name.strip("-") == "":
+        return NAMELESS
+    return name if part_name_problem(name) is None else f"{name[: LONGEST - 2]}-1"
+
+
+def is_nameless(text: str) -> bool:
+    """Whether a name only says that there is none."""
+    return bool(_NAMELESS.fullmatch(text.strip()))
+
+
+def unique(names: list[str]) -> list[str]:
+    """Each name safe, and with a number where an earlier one is the same to some file system."""
+    taken = {same_name(part_name(name)) for name in names}
+    used: set[str] = set()
+    found = []
+    numbers: dict[str, int] = {}
+    for name in map(part_name, names):
+        key = same_name(name)
+        if key in used:
+            number = numbers.get(key, 1)
+            while True:
+                number += 1
+                fresh = f"{name[: LONGEST - 6]}-{number}"
+                if same_name(fresh) not in taken:
+                    break
+            numbers[key] = number
+            name = fresh
+            taken.add(same_name(name))
+        used.add(same_name(name))
+        found.append(name)
+    return found

@@ -1,0 +1,183 @@
+"""Shapes become parts: named, merged or left out as asked, each with its tight box and what is not said by it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from pathlib import Path
+
+import numpy as np
+
+from foldfab.geometry.arrays import Array
+from foldfab.intake.distance import off_box
+from foldfab.intake.limits import check_bodies, fail
+from foldfab.intake.meshes import joined, shells
+from foldfab.intake.model import Body, Shapes, Wishes
+from foldfab.intake.naming import NAMELESS, is_nameless, part_name, unique
+from foldfab.intake.scale import check, in_millimetres
+from foldfab.intake.tight import fitted, hull, least, main_frame, settled
+from foldfab.recipe.form import FARTHEST, SMALLEST_SIZE
+from foldfab.recipe.model import Mesh, Part
+
+HARDWARE = 0.02
+"""A body whose longest side is less than this share of the furniture's is hardware: screws, pins, glides."""
+THINNEST = 1.0
+"""mm; a sheet without thickness gets this one."""
+IS_BOX = 0.05
+"""mm; a part that is no further off its box is one."""
+WORTH_SAYING = 0.02
+"""A part further off its box than this share of its longest side is spoken of."""
+_DIGITS = 4
+"""Of places and sizes, mm: below the noise of single precision at a few metres."""
+_MOST_TOLD = 12
+"""More names than these are counted, not listed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Grouping:
+    """What is asked of bodies by name before they become parts."""
+
+    ignored: tuple[str, ...] = ()
+    """Patterns such as `screw*`."""
+    merged: tuple[tuple[str, str], ...] = ()
+    """Pattern, and the name of the part that all that fit it become."""
+    kept: tuple[str, ...] = ()
+    """Patterns of what is no hardware, however small."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Outline:
+    """A body's hull, and its smallest box."""
+
+    body: Body
+    corners: Array
+    axes: Array
+
+
+def named(path: Path | str, shapes: Shapes, wishes: Wishes) -> tuple[list[Body], tuple[str, ...]]:
+    """The bodies in true mm, Z up, under safe and unique names, in the order of the file; and what had to be supposed.
+
+    Raises:
+        RecipeError: a wish cannot be fulfilled, or there are too many shells.
+    """
+    check(wishes)
+    scaled = in_millimetres(shapes, wishes)
+    return _named(path, scaled.bodies, wishes.split_shells), scaled.notes
+
+
+def parts(
+    path: Path | str, bodies: list[Body], wishes: Wishes, grouping: Grouping
+) -> tuple[tuple[Part, ...], tuple[str, ...]]:
+    """The parts that named bodies make, and notes on what had to be supposed or left out.
+
+    Raises:
+        RecipeError: nothing is left, or it is too large to be furniture.
+    """
+    notes: list[str] = []
+    bodies = _merged(_without(bodies, grouping.ignored, notes), grouping.merged)
+    if not bodies:
+        fail(path, "nothing is left of it; ignore less")
+    bodies = _without_hardware(bodies, wishes.smallest, grouping, notes)
+    outlines = [outline for outline in map(_outline, bodies) if outline is not None]
+    _tell(notes, "without area, left out", {b.name for b in bodies} - {outline.body.name for outline in outlines})
+    if not outlines:
+        fail(path, "nothing in it has an area")
+    return _boxed(path, outlines, notes), tuple(notes)
+
+
+def fits(name: str, pattern: str) -> bool:
+    """Whether a part's name fits a pattern with * and ?, capitals and small letters being the same."""
+    return fnmatchcase(name.casefold(), pattern.casefold())
+
+
+def _named(path: Path | str, bodies: tuple[Body, ...], split: bool) -> list[Body]:
+    """Under safe, unique names, in pieces where shells are to be parts."""
+    pieces = [(body, shells(body.mesh) if split else [body.mesh]) for body in bodies]
+    check_bodies(path, sum(len(some) for _, some in pieces))
+    names = unique([NAMELESS if is_nameless(body.name) and len(bodies) > 1 else body.name for body in bodies])
+    named = [
+        Body(name if len(some) == 1 else f"{name[:90]}-{number}", mesh)
+        for name, (_, some) in zip(names, pieces, strict=True)
+        for number, mesh in enumerate(some, 1)
+    ]
+    return [Body(name, body.mesh) for name, body in zip(unique([body.name for body in named]), named, strict=True)]
+
+
+def _without(bodies: list[Body], ignored: tuple[str, ...], notes: list[str]) -> list[Body]:
+    gone = {body.name for body in bodies if any(fits(body.name, pattern) for pattern in ignored)}
+    _tell(notes, "ignored as asked", gone)
+    return [body for body in bodies if body.name not in gone]
+
+
+def _merged(bodies: list[Body], merged: tuple[tuple[str, str], ...]) -> list[Body]:
+    """Those that fit a pattern as one, where the first of them stood; the first pattern that fits decides."""
+    groups: dict[str, list[Body]] = {}
+    for body in bodies:
+        name = next((name for pattern, name in merged if fits(body.name, pattern)), None)
+        groups.setdefault(body.name if name is None else part_name(name), []).append(body)
+    return [Body(name, joined([body.mesh for body in some])) for name, some in groups.items()]
+
+
+def _without_hardware(bodies: list[Body], smallest: float | None, grouping: Grouping, notes: list[str]) -> list[Body]:
+    kept = (*grouping.kept, *(name for _, name in grouping.merged))
+    low = np.array([body.mesh.vertices.min(0) for body in bodies])
+    high = np.array([body.mesh.vertices.max(0) for body in bodies])
+    limit = HARDWARE * float((high.max(0) - low.min(0)).max()) if smallest is None else smallest
+    is_small = (np.linalg.norm(high - low, axis=1) <= limit).tolist()
+    small = {body.name for body, small in zip(bodies, is_small, strict=True) if small}
+    gone = {name for name in small if not any(fits(name, pattern) for pattern in kept)}
+    _tell(notes, f"no longer than {limit:.4g} mm, left out as hardware (--smallest)", gone)
+    return [body for body in bodies if body.name not in gone]
+
+
+def _outline(body: Body) -> _Outline | None:
+    """None where it has no area."""
+    corners, normals = hull(body.mesh.vertices)
+    return _Outline(body, corners, least(corners, normals)) if len(normals) else None
+
+
+def _boxed(path: Path | str, outlines: list[_Outline], notes: list[str]) -> tuple[Part, ...]:
+    main = main_frame([o.corners for o in outlines], [o.axes for o in outlines])
+    off: dict[str, float] = {}
+    thin: list[str] = []
+    found = []
+    for outline in outlines:
+        axes = settled(outline.corners, outline.axes, main)
+        center, size = fitted(outline.corners, axes)
+        if max(np.abs(center).max(), size.max()) > FARTHEST:
+            fail(path, f"reaches further than {FARTHEST:.0f} mm; is the unit right? (--units)", outline.body.name)
+        distance = off_box(outline.body.mesh, center, axes, size)
+        if distance > WORTH_SAYING * size.max():
+            off[outline.body.name] = distance
+        if size.min() < SMALLEST_SIZE:
+            thin.append(outline.body.name)
+        found.append(_part(outline.body.name, center, size, axes, outline.body.mesh if distance > IS_BOX else None))
+    _tell(notes, f"sheets without thickness, taken as {THINNEST:g} mm thick", thin)
+    if off:
+        told = [f"{name} {distance:.3g} mm" for name, distance in sorted(off.items(), key=lambda item: -item[1])]
+        _tell(notes, "no boxes, taken as their boxes, which are off by", told, is_sorted=True)
+    _tell(notes, "stand in the very same place, as if the file had lost where they belong", _stacked(found))
+    return tuple(found)
+
+
+def _stacked(found: list[Part]) -> set[str]:
+    """The names of parts whose box is that of another part."""
+    places: dict[bytes, list[str]] = {}
+    for part in found:
+        key = np.round(np.concatenate([part.center, part.size, part.axes.reshape(-1)]), 3) + 0.0
+        places.setdefault(key.tobytes(), []).append(part.name)
+    return {name for names in places.values() if len(names) > 1 for name in names}
+
+
+def _part(name: str, center: Array, size: Array, axes: Array, shape: Mesh | None) -> Part:
+    thick: Array = np.where(size < SMALLEST_SIZE, THINNEST, size)
+    return Part(name, np.round(center, _DIGITS) + 0.0, np.round(thick, _DIGITS), axes, shape=shape)
+
+
+def _tell(notes: list[str], what: str, names: Iterable[str], is_sorted: bool = False) -> None:
+    """Adds a note on the parts of these names, where there are any."""
+    told = list(names) if is_sorted else sorted(names)
+    if told:
+        rest = f" and {len(told) - _MOST_TOLD} more" if len(told) > _MOST_TOLD else ""
+        notes.append(f"{what}: {'; '.join(told[:_MOST_TOLD])}{rest}")

@@ -1,0 +1,142 @@
+"""The same furniture in every format is the same recipe; recipes that name files."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from foldfab.errors import RecipeError
+from foldfab.intake.door import load
+from foldfab.intake.model import Wishes
+from foldfab.recipe.model import Recipe
+from foldfab.recipe.read import parse
+from foldfab.recipe.write import as_text
+
+from .furniture import SHELF, box, cylinder, glb, gltf, meshes, model_xml, obj, stl, threemf
+
+NO_WISHES = Wishes()
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """The shelf in every format that can be written by hand."""
+    (tmp_path / "shelf.obj").write_text(obj(meshes()), encoding="utf-8")
+    (tmp_path / "shelf.glb").write_bytes(glb(*gltf(meshes(), embed=False)))
+    (tmp_path / "shelf.gltf").write_text(json.dumps(gltf(meshes())[0]), encoding="utf-8")
+    threemf(tmp_path / "shelf.3mf", model_xml(meshes()))
+    (tmp_path / "shelf").mkdir()
+    for name, mesh in meshes().items():
+        (tmp_path / "shelf" / f"{name}.stl").write_bytes(stl(mesh))
+    return tmp_path
+
+
+def assert_is_the_shelf(recipe: Recipe) -> None:
+    found = {part.name: part for part in recipe.parts}
+    assert set(found) == set(SHELF)
+    for name, (center, size) in SHELF.items():
+        assert np.allclose(found[name].center, center, atol=0.01)
+        assert np.allclose(found[name].size, size, atol=0.01)
+        assert np.array_equal(found[name].axes, np.eye(3))
+
+
+@pytest.mark.parametrize("name", ["shelf.obj", "shelf.glb", "shelf.gltf", "shelf.3mf", "shelf"])
+def test_every_format_gives_the_same_recipe(folder: Path, name: str) -> None:
+    recipe = load(folder / name, NO_WISHES)
+    assert (recipe.name, recipe.direction) == ("shelf", None)
+    assert_is_the_shelf(recipe)
+
+
+def test_step_and_build123d_give_the_same_recipe(tmp_path: Path) -> None:
+    b3d = pytest.importorskip("build123d", reason="needs build123d and libGL", exc_type=ImportError)
+    solids = []
+    for name, (center, size) in SHELF.items():
+        solid = b3d.Solid.make_box(*size, b3d.Plane(tuple(np.subtract(center, np.array(size) / 2))))
+        solid.label = name
+        solids.append(solid)
+    shelf = b3d.Compound(label="shelf", children=solids)
+    b3d.export_step(shelf, tmp_path / "shelf.step")
+    for source in (shelf, tmp_path / "shelf.step"):
+        recipe = load(source, NO_WISHES)
+        assert recipe.name == "shelf"
+        assert_is_the_shelf(recipe)
+
+
+def test_a_recipe_as_understood_is_understood_again(folder: Path) -> None:
+    first = load(folder / "shelf.obj", NO_WISHES)
+    again = parse(json.loads(as_text(first)), "shelf.json", "shelf")
+    assert as_text(again) == as_text(first)
+
+
+def recipe(folder: Path, wishes: Wishes = NO_WISHES, **content: Any) -> Recipe:
+    (folder / "mine.json").write_text(json.dumps(content), encoding="utf-8")
+    return load(folder / "mine.json", wishes)
+
+
+def test_a_model_with_flags(folder: Path) -> None:
+    flags = [
+        {"name": "Side *", "hingeable": False},
+        {"name": "side left", "thickness": 3, "pin": {"mechanism": "slanted"}},
+        {"name": "Top", "ignore": True},
+        {"name": "b*", "merge": "floor"},
+        {"name": "lid", "box": {"center": [0, 0, 90], "size": [50, 30, 2]}},
+    ]
+    found = recipe(folder, model="shelf.3mf", parts=flags, direction="-y", units="cm")
+    parts = {part.name: part for part in found.parts}
+    assert list(parts) == ["Side left", "Side right", "floor", "Shelf", "lid"]
+    assert [part.hingeable for part in found.parts] == [False, False, True, True, True]
+    assert (parts["Side left"].thickness, parts["Side right"].thickness) == (3.0, None)
+    assert parts["Side left"].pin is not None
+    assert parts["lid"].size.tolist() == [500, 300, 20]
+    assert parts["floor"].size.tolist() == [500, 300, 18]
+    assert found.notes == ("ignored as asked: Top",)
+    assert found.direction is not None and found.direction.tolist() == [0, -1, 0]
+
+
+def test_the_recipes_unit_is_that_of_files_without_one(folder: Path) -> None:
+    assert recipe(folder, model="shelf.obj", units="in").parts[0].size.tolist() == [457.2, 7620, 19405.6]
+    assert recipe(folder, Wishes(units="mm"), model="shelf.obj", units="in").parts[0].size.tolist() == [18, 300, 764]
+    assert recipe(folder, model="shelf.obj").notes[0].startswith("the file states no unit")
+
+
+def test_a_part_from_a_mesh(folder: Path) -> None:
+    (folder / "leg.obj").write_text(obj({"a": cylinder(4, 40), "b": box((0, 0, 45), (8, 8, 10))}), encoding="utf-8")
+    top = {"name": "top", "box": {"center": [0, 0, 51], "size": [50, 50, 2]}}
+    found = recipe(folder, units="cm", parts=[{"name": "leg", "mesh": "leg.obj", "hingeable": False}, top])
+    leg = found.parts[0]
+    assert (leg.name, leg.hingeable) == ("leg", False)
+    assert np.allclose(leg.size, [80, 80, 500], atol=1)
+    assert leg.shape is not None
+    assert leg.shape.vertices.max() == pytest.approx(500)
+    assert found.notes[0].startswith("leg: no boxes")
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        ({"model": "../shelf.obj"}, "model: leads out"),
+        ({"model": "none.obj"}, "model: there is no file"),
+        ({"parts": [{"name": "a", "mesh": "/etc/passwd"}]}, "parts[0].mesh: leads out"),
+        ({"model": "shelf.obj", "parts": [{"name": "leg*"}]}, "parts[0].name: 'leg*' fits no body of the model"),
+        ({"model": "shelf.obj", "parts": [{"name": "top", "mesh": "shelf.3mf"}]}, "rename it"),
+        ({"model": "shelf.obj", "parts": [{"name": "*", "ignore": True}]}, "ignore less"),
+        ({"model": "mine.json"}, "not read"),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_is_said(folder: Path, content: dict[str, Any], says: str) -> None:
+    with pytest.raises(RecipeError) as caught:
+        recipe(folder, **content)
+    assert says in str(caught.value)
+
+
+def test_wishes_for_shapes_that_a_recipe_of_boxes_does_not_have() -> None:
+    with pytest.raises(RecipeError, match=r"--split-shells: is for files of shapes"):
+        load("bench", Wishes(split_shells=True))
+
+
+def test_a_name_that_is_no_folders(tmp_path: Path) -> None:
+    (tmp_path / "Mein Stuhl (2).obj").write_text(obj(meshes()), encoding="utf-8")
+    assert load(tmp_path / "Mein Stuhl (2).obj", NO_WISHES).name == "Mein-Stuhl-2"

@@ -162,13 +162,11 @@ def path() -> str:
 def hinge_table() -> None:
     """One hinge, by either kernel: the median of some cold runs."""
     from foldfab.fabrication.analytic import analytic, require
-    from foldfab.fabrication.build import shapes
     from foldfab.fabrication.printed import printed
 
     assembly = foldfab.fabricate(foldfab.foldabilize(foldfab.load(HINGE)))
     joint = next(joint for joint in assembly.joints if joint.is_inserted)
-    described = shapes(assembly.solution)[0]
-    halves = [described[name] for name in joint.parts]
+    halves = [assembly.shapes[name] for name in joint.parts]
     _, start, _ = measured(require)
     table = Table((Column(f"hinge {joint.name}", 26), Column("made in", 9), Column("volume", 14), Column("faces", 7)))
     table.head()

@@ -12,6 +12,7 @@ from foldfab.errors import FabricationError
 from foldfab.fabrication import solids
 from foldfab.fabrication.inspect import inspect
 from foldfab.fabrication.model import Assembly, Body, Finding, Joint
+from foldfab.fabrication.own import own_shapes
 from foldfab.fabrication.panels import panels
 from foldfab.fabrication.plates import axis_of, plate
 from foldfab.fabrication.posture import edge_up, needs_pins
@@ -48,6 +49,9 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
     _require_hinges(solution, posture)
     tell("solids", 0.0)
     described, findings = _shapes(solution)
+    if solution.scaffold.recipe.print.shape == "own":
+        described, told = own_shapes(solution, described)
+        findings += told
     made = _solids(described)
     times = key_times(solution)
     poses = configuration(solution, times)

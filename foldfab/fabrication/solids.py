@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from typing import TypeAlias
 
 import numpy as np
-from manifold3d import CrossSection, Error, JoinType, Manifold, Mesh, OpType
+from manifold3d import CrossSection, Error, FillRule, JoinType, Manifold, Mesh, OpType
 
 from foldfab.errors import FabricationError
 from foldfab.geometry.arrays import Array, Indices
@@ -78,6 +78,11 @@ def hull_of(points: Array) -> Solid:
 def grown(outline: Outline, margin: float) -> Outline:
     """The outline, `margin` mm wider on all sides."""
     return outline.offset(margin, JoinType.Miter, 2.0)
+
+
+def covered(triangles: Array) -> Outline:
+    """What triangles (n, 3, 2), counter-clockwise, cover together."""
+    return CrossSection(list(triangles), FillRule.NonZero)
 
 
 def rectangle(middle: Array, sides: Array) -> Outline:

@@ -135,6 +135,7 @@ def build_print(form: PrintForm) -> PrintOptions:
         material=form.material,
         posture=form.posture,
         hinge=form.hinge,
+        shape=form.shape,
         latch=form.latch,
         scale=None if form.scale == "fit" else float(form.scale),
     )

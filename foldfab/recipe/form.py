@@ -345,6 +345,9 @@ class PrintForm(Form):
     hinge: Annotated[HingeKind, AfterValidator(_makeable)] = Field(
         default=_PRINT.hinge, description="How hinges are pinned together."
     )
+    shape: Literal["plain", "own"] = Field(
+        default=_PRINT.shape, description="Plain plates, or cut to the outlines of parts that came with a shape."
+    )
     latch: bool = Field(default=_PRINT.latch, description="Whether a detent holds the furniture open.")
     scale: Scale = Field(default="fit", description="Print size over true size; fit is the largest on the printer.")
 

@@ -153,6 +153,8 @@ class PrintOptions:
     """Why it is this posture, where it was chosen for the maker."""
     hinge: HingeKind = "cone"
     """How the knuckles of a hinge are pinned together."""
+    shape: Literal["plain", "own"] = "plain"
+    """Whether plates are plain, or cut to the outlines of parts that came as meshes or CAD solids."""
     latch: bool = False
     """Whether base hinges get a detent that holds them open."""
     scale: float | None = None

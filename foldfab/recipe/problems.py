@@ -87,6 +87,7 @@ EXPECTED = MappingProxyType(
         "material": '"pla", "petg", "abs" or "nylon"',
         "posture": 'one of "open", "folded", "edge", "plate", "auto"',
         "hinge": '"cone", "filament", "screw-m2", "screw-m3" or "clip"',
+        "shape": '"plain" or "own"',
         "latch": "true or false",
         "scale": '"fit" or a number from 0.00001 to 1000, such as 0.2',
     }

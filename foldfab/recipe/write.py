@@ -84,6 +84,7 @@ def _print(options: PrintOptions) -> dict[str, Any]:
         "material": options.material,
         "posture": options.posture,
         "hinge": options.hinge,
+        "shape": options.shape,
         "latch": options.latch,
         "scale": "fit" if options.scale is None else options.scale,
     }

@@ -12,6 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from foldfab.fabrication.shapes import Shape, box, rod
+from foldfab.fabrication.walls import LINE
 from foldfab.folding.model import Thickness
 from foldfab.geometry.arrays import Array
 from foldfab.recipe.hinges import STYLES
@@ -80,9 +81,15 @@ def _group(low: float, high: float, thickness: Thickness) -> Knuckles:
     return Knuckles(tuple(marks[::2]), tuple(marks[1::2]), ((marks[0][0], marks[-1][1]),))
 
 
-def room(marks: tuple[Mark, ...], radius: float, thickness: Thickness, x: float, z: float) -> list[Shape]:
-    """What the other part must leave free around knuckles at `marks`."""
-    return [rod(radius, a - thickness.gap, b + thickness.gap, x, z, is_hole=True) for a, b in marks]
+def room(marks: tuple[Mark, ...], radius: float, thickness: Thickness, x: float, z: float, span: Mark) -> list[Shape]:
+    """What the other part, which reaches over a span, must leave free around knuckles at `marks`.
+
+    What would be left beyond them thinner than a line goes too.
+    """
+    gap, (low, high) = thickness.gap, span
+    ends = [(a - gap, b + gap) for a, b in marks]
+    ends = [(a - LINE if low < a < low + LINE else a, b + LINE if high - LINE < b < high else b) for a, b in ends]
+    return [rod(radius, a, b, x, z, is_hole=True) for a, b in ends]
 
 
 def webs(marks: tuple[Mark, ...], thickness: Thickness, x: float, z: float, toward: float) -> list[Shape]:

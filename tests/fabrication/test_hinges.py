@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from foldfab.fabrication import solids
-from foldfab.fabrication.hinges import Knuckles, knuckles
+from foldfab.fabrication.hinges import Knuckles, knuckles, room
 from foldfab.fabrication.panels import panels
 from foldfab.fabrication.plates import plate
 from foldfab.fabrication.printed import printed
@@ -213,3 +213,12 @@ def loose_pin(chain: Chain, thickness: Thickness, hinge: int) -> Solid:
     short = 1.0
     ends = [sorted(pin) for pin in knuckles(chain.hinge_spans[hinge], thickness).pins]
     return solids.union([solids.rod(radius, a + short, b - short, place[0], place[2]) for a, b in ends])
+
+
+def test_no_wall_thinner_than_a_line_is_left_beyond_a_hinge() -> None:
+    thickness = Thickness(4.0, 0.3)
+    marks = ((2.0, 8.0), (12.0, 18.0))
+    thin, thick = (room(marks, 2.3, thickness, 0.0, 0.0, span) for span in ((1.4, 18.6), (0.0, 20.0)))
+    ends = [[solids.bounds(printed(hole)) for hole in holes] for holes in (thin, thick)]
+    assert ends[0][0][0][1] < 1.4 and ends[0][1][1][1] > 18.6
+    assert ends[1][0][0][1] == pytest.approx(1.7) and ends[1][1][1][1] == pytest.approx(18.3)

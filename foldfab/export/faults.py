@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from foldfab.geometry.arrays import Array, Indices
+from foldfab.geometry.flat_triangles import heights as heights_of
 
 FLAT_MM = 5e-6
 """A triangle that is lower than this is degenerate: half a step of the grid that files are written on."""
@@ -42,7 +43,7 @@ def faults(vertices: Array, faces: Indices) -> Faults:
     ends, index, count = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True)
     sense = np.bincount(index.reshape(-1), np.where(edges[:, 0] < edges[:, 1], 1, -1), minlength=len(ends))
     backwards = int(np.sum((count == 2) & (sense != 0)))
-    heights = _heights(vertices[faces])
+    heights = heights_of(vertices[faces])
     is_sound = bool((count == 2).all()) and backwards == 0
     return Faults(
         open_edges=int(np.sum(count == 1)),
@@ -57,10 +58,3 @@ def volume(vertices: Array, faces: Indices) -> float:
     """mm³; negative where the mesh is inside out."""
     corners = vertices[faces] - vertices.mean(axis=0)
     return float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6)
-
-
-def _heights(corners: Array) -> Array:
-    """(m,) least heights of (m, 3, 3) triangles."""
-    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
-    doubled = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    return np.asarray(np.divide(doubled, longest, out=np.zeros_like(doubled), where=longest > 0))

@@ -15,6 +15,7 @@ from manifold3d import CrossSection, Error, FillRule, JoinType, Manifold, Mesh, 
 
 from foldfab.errors import FabricationError
 from foldfab.geometry.arrays import Array, Indices
+from foldfab.geometry.flat_triangles import heights
 
 Solid: TypeAlias = Manifold
 """A closed solid of the kernel."""
@@ -145,15 +146,7 @@ def stays_closed(body: Solid) -> bool:
     welded = index.reshape(-1)[faces]
     edges = np.sort(np.concatenate([welded[:, [0, 1]], welded[:, [1, 2]], welded[:, [2, 0]]]), axis=1)
     _, counts = np.unique(edges, axis=0, return_counts=True)
-    return bool((counts == 2).all()) and _least_height(vertices[faces]) > FLAT
-
-
-def _least_height(corners: Array) -> float:
-    """Of triangles (m, 3, 3), mm."""
-    sides = corners - np.roll(corners, 1, axis=1)
-    doubled = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
-    longest = np.linalg.norm(sides, axis=2).max(axis=1)
-    return float(np.min(doubled / np.maximum(longest, FLAT), initial=np.inf))
+    return bool((counts == 2).all()) and float(heights(vertices[faces]).min(initial=np.inf)) > FLAT
 
 
 def pieces(body: Solid) -> int:

@@ -52,6 +52,8 @@ def cheapest(
         forbidden: combinations of (group, option) that must not all be taken together.
         gaps: gets by how much the choice may be dearer than the cheapest one, where the work did not suffice to tell.
     """
+    if not conflicts and not forbidden:
+        return tuple(int(np.argmin(c)) for c in costs) if all(np.isfinite(c.min()) for c in costs) else None
     table = _by_group(len(costs), conflicts)
     held = _held(len(costs), forbidden)
     alive = [_undominated(costs[g], table[g], held[g]) for g in range(len(costs))]

@@ -52,6 +52,8 @@ class Problem:
     """The first unit of each kind, by what it looks like wherever it stands."""
     solved: dict[object, Any] = field(default_factory=dict)
     """Solutions of units, by all that they depend on."""
+    begun: dict[object, Any] = field(default_factory=dict)
+    """Conflict graphs of units that were estimated but not folded yet, by all that they depend on."""
     hopeless: dict[Unit, str] = field(default_factory=dict)
     """Units that cannot fold wherever they stand, and why."""
     plays: list[int] = field(default_factory=list)

@@ -75,7 +75,9 @@ def _solved(scaffold: Scaffold, thickness: Thickness) -> FoldSolution:
         met = first_clash(problem, open_scene(problem), ordered.folds)
         if met is None:
             return solution(problem, bound, ordered)
-        problem = replace(problem, banned=problem.banned | {met}, repertoires={}, poses={}, solved={}, hopeless={})
+        problem = replace(
+            problem, banned=problem.banned | {met}, repertoires={}, poses={}, solved={}, begun={}, hopeless={}
+        )
         choices = floors(problem)
     told = ", ".join(sorted({patch for patch, _ in problem.banned}))
     raise FoldingError(f"no folding solution found: {told} stay in the way of what folds before; try another thickness")

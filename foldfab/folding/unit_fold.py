@@ -109,7 +109,8 @@ def _estimate(problem: Problem, scene: Scene, own: Repertoire, around: Surroundi
         return np.inf
     found = prospects(problem, own, around, in_place=False)
     graph = Graph(problem, own, found, around.offset, chosen=scene.chosen)
-    _, graph, picked = _picked(problem, scene, own, around, found, graph, in_place=False)
+    found, graph, picked = _picked(problem, scene, own, around, found, graph, in_place=False)
+    problem.begun[around.key, around.offset.tobytes()] = found, graph
     return graph.weight(picked) if picked is not None else np.inf
 
 
@@ -161,8 +162,7 @@ def _fold(
     if around.standing:
         return Refusal(unit, f"{', '.join(sorted(around.standing)[:3])} in the way still stands unfolded")
     why: list[str] = []
-    found = prospects(problem, own, around, in_place=in_place)
-    graph = Graph(problem, own, found, around.offset, chosen=scene.chosen)
+    found, graph = _begun(problem, scene, own, around, in_place=in_place)
     for _ in range(ROUNDS):
         found, graph, picked = _picked(problem, scene, own, around, found, graph, in_place=in_place)
         if picked is None:
@@ -176,6 +176,17 @@ def _fold(
         why += [result.reason] if result.reason not in why else []
         graph.learn(picked, result)
     return Refusal(unit, reason_against(problem, own, found, why))
+
+
+def _begun(
+    problem: Problem, scene: Scene, own: Repertoire, around: Surroundings, *, in_place: bool
+) -> tuple[Prospects, Graph]:
+    """What the unit can do and its conflict graph, made already where it was estimated in such surroundings."""
+    known: tuple[Prospects, Graph] | None = problem.begun.pop((around.key, around.offset.tobytes()), None)
+    if known is not None and not in_place:
+        return known
+    found = prospects(problem, own, around, in_place=in_place)
+    return found, Graph(problem, own, found, around.offset, chosen=scene.chosen)
 
 
 def _picked(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -67,6 +67,11 @@ class Problem:
         if key not in self.extents:
             self.extents[key] = extent(self.furniture, direction)
         return self.extents[key]
+
+
+def without(problem: Problem, banned: frozenset[tuple[str, Variant]]) -> Problem:
+    """The problem with these variants banned, and nothing remembered that they could have been part of."""
+    return replace(problem, banned=banned, repertoires={}, poses={}, solved={}, begun={}, hopeless={})
 
 
 def variants(problem: Problem, unit: Unit, patch: str) -> tuple[Variant, ...]:

@@ -88,13 +88,15 @@ def _look_at(
     problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane], room: Room, met: dict[int, set[int]]
 ) -> None:
     """Finds out which pieces of the lanes have no room, and what they meet."""
-    found, hit = _held_against(problem, own, around, many)
-    room.update(found)
-    met.update(hit)
-    for x in many:
+    fresh = [x for x in many if x.number not in around.met]
+    found, hit = _held_against(problem, own, around, fresh)
+    for x in fresh:
         if x.is_out or (problem.options.stay_in_box and leaves_the_box(problem, own, around, x)):
-            room[x.number] = np.ones_like(room[x.number])
-            met[x.number].add(-1)
+            found[x.number] = np.ones_like(found[x.number])
+            hit[x.number].add(-1)
+        around.met[x.number] = found[x.number], hit[x.number]
+    for x in many:
+        room[x.number], met[x.number] = around.met[x.number]
 
 
 def _held_against(

@@ -48,6 +48,8 @@ class UnitFold:
     """Sum of its terms of eq. 1."""
     weight: float
     """What the search minimises: the cost, with deletions counted many times."""
+    seen: object
+    """All that it depends on (`Surroundings.key`)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -151,7 +153,8 @@ def has_room(problem: Problem, own: Repertoire, around: Surroundings, choice: Ch
     """Whether nothing around is in the way of a choice, as far as the nominal fold tells."""
     if around.standing or len(choice.places) < len(own.unit.patches):
         return False
-    room = blocked_pieces(problem, own, around, [x for x, _ in choice.places.values()])
+    # All lanes at once: where the choice has no room, the others are asked next.
+    room = blocked_pieces(problem, own, around, [x for many in own.plain.values() for x in many])
     return not any(room[x.number][a:b].any() for x, (a, b) in choice.places.values())
 
 
@@ -172,7 +175,7 @@ def _fold(
         if not isinstance(result, Clash):
             reasons = reasons_of(problem, own, found, chosen)
             cost = sum(o.cost for o in chosen.values())
-            return UnitFold(unit, chosen, reasons, *result, around.cluster, cost, graph.weight(picked))
+            return UnitFold(unit, chosen, reasons, *result, around.cluster, cost, graph.weight(picked), around.key)
         why += [result.reason] if result.reason not in why else []
         graph.learn(picked, result)
     return Refusal(unit, reason_against(problem, own, found, why))

@@ -109,7 +109,7 @@ def _undominated(price: Array, conflicts: Mapping[int, Bools], held: list[int]) 
 
 
 def _dominated(excludes: Bools, free: Bools) -> Bools:
-    """Which of some options (n,), cheapest first, one before them dominates: it is free, and excludes (n, m) no more."""
+    """Which options (n,), cheapest first, one before them dominates: it is free, and excludes (n, m) no more."""
     bits = np.packbits(excludes, axis=1)
     found = np.zeros(len(bits), dtype=bool)
     for i in np.nonzero(free)[0].tolist():

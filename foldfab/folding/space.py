@@ -100,14 +100,23 @@ def meetings(a: Batch, b: Batch, excluded: Excluded = None) -> Iterator[tuple[In
         i, j = i[keep], j[keep]
     for start in range(0, len(i), CHUNK):
         p, q = i[start : start + CHUNK], j[start : start + CHUNK]
-        near = (a.low[:, p] <= b.high[:, q]).all(-1) & (b.low[:, q] <= a.high[:, p]).all(-1)
-        frame, pair = np.nonzero(near)
+        frame, pair = np.nonzero(_near(a, b, p, q))
         if not len(frame):
             continue
         p, q = p[pair], q[pair]
         hit = overlaps(_at(a, frame, p), _at(b, frame, q))
         if hit.any():
             yield frame[hit], p[hit], q[hit]
+
+
+def _near(a: Batch, b: Batch, p: Indices, q: Indices) -> Bools:
+    """(frames, k) when the bounds of each box `p` of `a` overlap those of the box `q` of `b`."""
+    # Axis by axis: that takes a third of the time of a reduction over rows of three.
+    found = np.ones((max(len(a.low), len(b.low)), len(p)), dtype=bool)
+    for axis in range(3):
+        found &= a.low[:, p, axis] <= b.high[:, q, axis]
+        found &= b.low[:, q, axis] <= a.high[:, p, axis]
+    return found
 
 
 def blocked(a: Batch, cuts: Array, b: Batch, excluded: Excluded = None) -> tuple[Bools, Indices, Indices]:

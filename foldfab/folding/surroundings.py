@@ -57,7 +57,7 @@ class Surroundings:
     moved: dict[object, Batch] = field(default_factory=dict)
     """Its boxes as they move with the unit's bases, by way and section, as far as that was asked for."""
     met: dict[int, tuple[Bools, set[int]]] = field(default_factory=dict)
-    """By lane of the unit that was held against it, which of its pieces (N_s,) have no room, and what boxes it meets."""
+    """By lane of the unit that was held against it, which of its pieces (N_s,) have no room, and the boxes it meets."""
 
 
 def look(problem: Problem, scene: Scene, own: Repertoire) -> Surroundings:

@@ -153,8 +153,7 @@ def has_room(problem: Problem, own: Repertoire, around: Surroundings, choice: Ch
     """Whether nothing around is in the way of a choice, as far as the nominal fold tells."""
     if around.standing or len(choice.places) < len(own.unit.patches):
         return False
-    # All lanes at once: where the choice has no room, the others are asked next.
-    room = blocked_pieces(problem, own, around, [x for many in own.plain.values() for x in many])
+    room = blocked_pieces(problem, own, around, [x for x, _ in choice.places.values()])
     return not any(room[x.number][a:b].any() for x, (a, b) in choice.places.values())
 
 

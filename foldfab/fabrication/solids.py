@@ -142,11 +142,19 @@ def stays_closed(body: Solid) -> bool:
     """
     vertices, faces = mesh(body)
     grid = np.round(vertices, WELD_DIGITS).astype(np.float32)
-    _, index = np.unique(grid, axis=0, return_inverse=True)
-    welded = index.reshape(-1)[faces]
-    edges = np.sort(np.concatenate([welded[:, [0, 1]], welded[:, [1, 2]], welded[:, [2, 0]]]), axis=1)
-    _, counts = np.unique(edges, axis=0, return_counts=True)
+    welded = _numbered(grid)[faces]
+    edges = np.concatenate([welded[:, [0, 1]], welded[:, [1, 2]], welded[:, [2, 0]]])
+    _, counts = np.unique(edges.min(axis=1) * len(grid) + edges.max(axis=1), return_counts=True)
     return bool((counts == 2).all()) and float(heights(vertices[faces]).min(initial=np.inf)) > FLAT
+
+
+def _numbered(points: Array) -> Indices:
+    """(n,) numbers of points (n, 3), the same where points are."""
+    number = np.zeros(len(points), dtype=np.int64)
+    for column in points.T:
+        _, rank = np.unique(column, return_inverse=True)
+        _, number = np.unique(number * len(points) + rank.reshape(-1), return_inverse=True)
+    return number.reshape(-1)
 
 
 def pieces(body: Solid) -> int:

@@ -2,12 +2,13 @@
 
 A piece is taken where its body stays one body, no gap as printed gets narrower than the clearance, nothing meets it at
 any instant, what it is let into is not another hinge's foot, and the print still fits its bed. Costs a boolean for each
-instant at which the piece is near another body.
+instant at which the piece is near another body; what costs least is asked first.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
@@ -23,13 +24,21 @@ from foldfab.fabrication.printed import printed
 from foldfab.fabrication.shapes import cut, union
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.stops import Stop
-from foldfab.fabrication.turning import Turn, stops_at, turn
+from foldfab.fabrication.turning import PAST, Turn, meets, stops_at, turn
 from foldfab.fabrication.walls import thin_sides
 from foldfab.folding.kinematics import configuration
 from foldfab.geometry.arrays import Array, Bools
 
 ROUNDING = 0.01
 """By how much a print may seem to grow, mm."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Fitted:
+    """A stop with the two bodies that it changes."""
+
+    stop: Stop
+    changed: dict[str, Solid]
 
 
 class Trial:
@@ -40,6 +49,7 @@ class Trial:
     ) -> None:
         """`ramps` is what will be cut from bodies once they have their stops."""
         self.assembly, self.made, self.shapes = assembly, made, dict(assembly.shapes)
+        self._plain = made
         self.poses = configuration(assembly.solution, instants(assembly))
         self._bounds = {name: self._along(name, solid) for name, solid in made.items()}
         self._is_open = assembly.posture in ("open", "plate")
@@ -49,41 +59,58 @@ class Trial:
         self._feet = list(_feet(assembly))
         self.turns = {j.name: turn(j, *(self.poses[p] for p in j.parts)) for j in assembly.joints}
         self._ramps = ramps
-        self._thin = {name: self._thin_sides(name, solid) for name, solid in made.items()}
+        self._thin: dict[str, int] = {}
         self.gives: dict[str, list[Solid]] = {}
         """By panel, what of it gives way while it passes its latches."""
         self._parts = {j.name: j.parts for j in assembly.joints}
 
     def angle(self, joint: str, *, is_folded: bool) -> float | None:
         """How far past an end of its range a hinge turns as it stands, degrees."""
-        return self._angle(joint, self.made, is_folded)
+        return stops_at(self.turns[joint], *self._halves(joint), is_folded=is_folded)
 
-    def better(self, stop: Stop) -> float | None:
-        """The angle at which a stop would work, where there is room for it and it does better than what is there."""
-        made = self._with(stop)
-        if made is None:
+    def is_prompt(self, joint: str, *, is_folded: bool, fitted: Fitted | None = None) -> bool:
+        """Whether a hinge stops within `PAST` of an end of its range, as it stands or with a stop."""
+        first, second = self._halves(joint, fitted)
+        return meets(self.turns[joint], first, second, PAST, is_folded=is_folded)
+
+    def fitted(self, stop: Stop) -> Fitted | None:
+        """The bodies with a stop; None where a body would fall apart, or a third one or the bed is in its way."""
+        if not self._fits(stop) or (stop.cut is not None and self._is_taken(stop)):
             return None
-        before = self.angle(stop.joint, is_folded=stop.is_folded)
-        after = self._angle(stop.joint, made, stop.is_folded)
-        if after is None or (before is not None and after >= before) or not self._has_room(stop, made):
+        others = [name for name in self.made if name not in (stop.body, stop.other)]
+        if not self._is_clear(stop, {name: self.made[name] for name in others}):
             return None
+        changed = self._with(stop)
+        return None if changed is None else Fitted(stop, changed)
+
+    def has_room(self, fitted: Fitted) -> bool:
+        """Whether a stop stays apart from what it stops against along the whole fold, and leaves no thin wall."""
+        stop, changed = fitted.stop, fitted.changed
+        if not self._is_clear(stop, {stop.other: changed[stop.other]}):
+            return False
         # What lies between two holes may be too thin to be printed.
-        return None if any(self._thin_sides(n, made[n]) > self._thin[n] for n in (stop.body, stop.other)) else after
+        return all(self._thin_sides(name, solid) <= self._thin_before(name) for name, solid in changed.items())
 
-    def _thin_sides(self, name: str, solid: Solid) -> int:
-        return thin_sides(solids.cut(solid, self._ramps.get(name, [])))
+    def soonest(self, late: Sequence[Fitted]) -> Fitted | None:
+        """Of stops that work beyond `PAST`, the one that works first and has room; None where none does better."""
+        if not late:
+            return None
+        joint, is_folded = late[0].stop.joint, late[0].stop.is_folded
+        before = self.angle(joint, is_folded=is_folded)
+        angles = [stops_at(self.turns[joint], *self._halves(joint, one), is_folded=is_folded) for one in late]
+        better = [(angle, n) for n, angle in enumerate(angles) if angle is not None and (before is None or angle < before)]
+        return next((late[n] for _, n in sorted(better) if self.has_room(late[n])), None)
 
-    def take(self, stop: Stop) -> None:
+    def take(self, fitted: Fitted) -> None:
         """Makes a stop."""
-        made = self._with(stop)
-        assert made is not None
-        self.made = made
+        stop = fitted.stop
+        self.made = {**self.made, **fitted.changed}
         self.shapes[stop.body] = union([self.shapes[stop.body], stop.added])
         if stop.cut is not None:
             self.shapes[stop.other] = cut(self.shapes[stop.other], [stop.cut])
-        for name in (stop.body, stop.other):
-            self._bounds[name] = self._along(name, made[name])
-            low, high = self._printed(name, made[name])
+        for name, solid in fitted.changed.items():
+            self._bounds[name] = self._along(name, solid)
+            low, high = self._printed(name, solid)
             self._extent = np.minimum(low, self._extent[0]), np.maximum(high, self._extent[1])
 
     def latch(self, stop: Stop) -> Latch | None:
@@ -103,28 +130,35 @@ class Trial:
             self.gives.setdefault(stop.body, []).append(printed(stop.detent.pressed))
         return found
 
-    def _angle(self, joint: str, made: dict[str, Solid], is_folded: bool) -> float | None:
+    def _halves(self, joint: str, fitted: Fitted | None = None) -> tuple[Solid, Solid]:
+        made = self.made if fitted is None else {**self.made, **fitted.changed}
         first, second = self._parts[joint]
-        range_: Turn = self.turns[joint]
-        return stops_at(range_, made[first], made[second], is_folded=is_folded)
+        return made[first], made[second]
 
     def _with(self, stop: Stop) -> dict[str, Solid] | None:
-        """The bodies with a stop; None where one of them would fall apart."""
-        made = {**self.made, stop.body: solids.tidied(solids.union([self.made[stop.body], printed(stop.added)]))}
-        if stop.cut is not None:
-            made[stop.other] = solids.tidied(solids.cut(made[stop.other], [printed(stop.cut)]))
-        changed = [made[name] for name in (stop.body, stop.other)]
-        return made if all(solids.pieces(s) == 1 and solids.stays_closed(s) for s in changed) else None
+        """The two bodies with a stop; None where one of them would fall apart."""
+        body = solids.union([self.made[stop.body], printed(stop.added)])
+        other = self.made[stop.other]
+        other = other if stop.cut is None else solids.cut(other, [printed(stop.cut)])
+        if not all(solids.pieces(solid) == 1 for solid in (body, other)):
+            return None
+        changed = {name: solids.tidied(solid) for name, solid in ((stop.body, body), (stop.other, other))}
+        return changed if all(solids.pieces(s) == 1 and solids.stays_closed(s) for s in changed.values()) else None
 
-    def _has_room(self, stop: Stop, made: dict[str, Solid]) -> bool:
-        if stop.cut is not None and self._is_taken(stop):
-            return False
-        if not self._fits(stop):
-            return False
+    def _thin_before(self, name: str) -> int:
+        """How many thin sides a body had before it got any stop."""
+        if name not in self._thin:
+            self._thin[name] = self._thin_sides(name, self._plain[name])
+        return self._thin[name]
+
+    def _thin_sides(self, name: str, solid: Solid) -> int:
+        return thin_sides(solids.cut(solid, self._ramps.get(name, [])))
+
+    def _is_clear(self, stop: Stop, others: Mapping[str, Solid]) -> bool:
+        """Whether nothing meets the material of a stop along the whole fold."""
         added = printed(stop.added)
         reach = self._along(stop.body, added)
-        others = [name for name in made if name != stop.body]
-        return all(self._is_apart(stop.body, added, name, made[name], reach) for name in others)
+        return all(self._is_apart(stop.body, added, name, solid, reach) for name, solid in others.items())
 
     def _is_taken(self, stop: Stop) -> bool:
         """Whether what is cut away is, or holds, something else."""

@@ -30,6 +30,8 @@ SLIVERS = (1e-3, 3e-3, 1e-2, 2e-2, 3e-2, 5e-2)
 """Detail that may be given up, mm; the finest that leaves a sound mesh is taken."""
 FLAT = 2e-5
 """A triangle that is lower than this, mm, may have no area any more on the grid of a file, wherever it is turned."""
+CRUMB = 1e-3
+"""A shell of less than this is dust that a boolean left behind, mm³: a tenth of a millimetre each way."""
 WELD_DIGITS = 5
 """Vertices closer than this many decimals of a millimetre are one in a file."""
 
@@ -124,7 +126,7 @@ def tidied(body: Solid) -> Solid:
     """
     for whole in (body, body.as_original()):
         for detail in SLIVERS:
-            tidy = checked(whole.simplify(detail))
+            tidy = without_crumbs(checked(whole.simplify(detail)))
             if stays_closed(tidy):
                 return tidy
     return tidy
@@ -157,9 +159,16 @@ def _numbered(points: Array) -> Indices:
     return number.reshape(-1)
 
 
+def without_crumbs(body: Solid) -> Solid:
+    """The body without the specks that booleans of nearly coplanar faces leave beside it."""
+    parts = body.decompose()
+    kept = [part for part in parts if abs(part.volume()) > CRUMB]
+    return kept[0] if len(kept) == 1 and len(parts) > 1 else body
+
+
 def pieces(body: Solid) -> int:
-    """How many separate bodies it is."""
-    return sum(1 for part in body.decompose() if part.volume() > 0)
+    """How many separate shells it has: specks and voids count, as they do for whoever reads its file."""
+    return len(body.decompose())
 
 
 def overlap(a: Solid, b: Solid) -> float:

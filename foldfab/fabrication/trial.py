@@ -140,8 +140,6 @@ class Trial:
         body = solids.union([self.made[stop.body], printed(stop.added)])
         other = self.made[stop.other]
         other = other if stop.cut is None else solids.cut(other, [printed(stop.cut)])
-        if not all(solids.pieces(solid) == 1 for solid in (body, other)):
-            return None
         changed = {name: solids.tidied(solid) for name, solid in ((stop.body, body), (stop.other, other))}
         return changed if all(solids.pieces(s) == 1 and solids.stays_closed(s) for s in changed.values()) else None
 

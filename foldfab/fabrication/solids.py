@@ -143,7 +143,7 @@ def stays_closed(body: Solid) -> bool:
     A triangle that has no height on that grid any more does not count as one.
     """
     vertices, faces = mesh(body)
-    grid = np.round(vertices, WELD_DIGITS).astype(np.float32)
+    grid: Array = np.round(vertices, WELD_DIGITS).astype(np.float32).astype(np.float64)
     welded = _numbered(grid)[faces]
     edges = np.concatenate([welded[:, [0, 1]], welded[:, [1, 2]], welded[:, [2, 0]]])
     _, counts = np.unique(edges.min(axis=1) * len(grid) + edges.max(axis=1), return_counts=True)

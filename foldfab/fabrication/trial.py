@@ -24,7 +24,7 @@ from foldfab.fabrication.printed import printed
 from foldfab.fabrication.shapes import cut, union
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.stops import Stop
-from foldfab.fabrication.turning import PAST, Turn, meets, stops_at, turn
+from foldfab.fabrication.turning import PAST, meets, stops_at, turn
 from foldfab.fabrication.walls import thin_sides
 from foldfab.folding.kinematics import configuration
 from foldfab.geometry.arrays import Array, Bools
@@ -98,7 +98,9 @@ class Trial:
         joint, is_folded = late[0].stop.joint, late[0].stop.is_folded
         before = self.angle(joint, is_folded=is_folded)
         angles = [stops_at(self.turns[joint], *self._halves(joint, one), is_folded=is_folded) for one in late]
-        better = [(angle, n) for n, angle in enumerate(angles) if angle is not None and (before is None or angle < before)]
+        better = [
+            (angle, n) for n, angle in enumerate(angles) if angle is not None and (before is None or angle < before)
+        ]
         return next((late[n] for _, n in sorted(better) if self.has_room(late[n])), None)
 
     def take(self, fitted: Fitted) -> None:

@@ -176,6 +176,11 @@ def overlap(a: Solid, b: Solid) -> float:
     return float((a ^ b).volume())
 
 
+def within(body: Solid, low: Array, high: Array) -> Solid:
+    """What of a body lies between two corners (3,)."""
+    return checked(body ^ box(low, high))
+
+
 def gap(a: Solid, b: Solid, within: float) -> float:
     """Least distance between two solids, at most `within`."""
     return float(a.min_gap(b, within))

@@ -50,6 +50,8 @@ class UnitFold:
     """What the search minimises: the cost, with deletions counted many times."""
     seen: object
     """All that it depends on (`Surroundings.key`)."""
+    gap: float = 0.0
+    """By how much it may weigh more than the cheapest in these surroundings, where the work did not suffice to tell."""
     learned: tuple[Lesson, ...] = ()
     """What did not work in these surroundings."""
 
@@ -179,16 +181,9 @@ def _fold(
             reasons = reasons_of(problem, own, found, chosen)
             cost = sum(o.cost for o in chosen.values())
             return UnitFold(
-                unit,
-                chosen,
-                reasons,
-                *result,
-                around.cluster,
-                cost,
-                graph.weight(picked),
-                around.key,
-                tuple(graph.learned),
-            )
+                unit, chosen, reasons, *result, around.cluster, cost, graph.weight(picked), around.key,
+                gap=float(sum(graph.gaps)), learned=tuple(graph.learned),
+            )  # fmt: skip
         why += [result.reason] if result.reason not in why else []
         graph.learn(picked, result)
     return Refusal(unit, reason_against(problem, own, found, why), tuple(graph.learned))

@@ -8,7 +8,7 @@ write(assembly, Path("prints/bench"))
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -41,7 +41,7 @@ SCALE_ROUNDS = 6
 
 def load(
     source: str | Path | build123d.Shape, *, units: str | None = None, up: str | None = None,
-    split_shells: bool = False, smallest: float | None = None, **overrides: Any,
+    split_shells: bool = False, smallest: float | None = None, ignore: Collection[str] = (), **overrides: Any,
 ) -> Recipe:  # fmt: skip
     """The furniture in a recipe, in a file of shapes, or in a build123d object, with options put over it.
 
@@ -52,6 +52,7 @@ def load(
         up: the axis of a file of shapes that points up, "x", "y" or "z"; that of its format where missing.
         split_shells: whether shells of one body that do not touch are parts of their own.
         smallest: mm; bodies no longer than this are hardware and left out.
+        ignore: names of parts that are left out, with * and ? for those that are alike.
         overrides: options of the command line, by name.
 
     Raises:
@@ -63,7 +64,8 @@ def load(
     from foldfab.recipe.clearance import calibrated
     from foldfab.recipe.edit import override
 
-    recipe = opened(source, Wishes(units=units, up=up, split_shells=split_shells, smallest=smallest))
+    asked = Wishes(units=units, up=up, split_shells=split_shells, smallest=smallest, ignore=tuple(ignore))
+    recipe = opened(source, asked)
     return calibrated(override(recipe, **overrides) if overrides else recipe)
 
 
@@ -131,6 +133,7 @@ def foldabilize(recipe: Recipe) -> FoldSolution:
     recipe = with_pins(recipe)
     if recipe.direction is not None:
         return _along(recipe, recipe.direction)
+    _require_connected(recipe)
     found: list[tuple[int, float, int, FoldSolution]] = []
     reasons = []
     for rank, (name, axis) in enumerate(AXES.items()):
@@ -264,6 +267,16 @@ def shipped() -> tuple[Path, ...]:
     from foldfab.recipe.find import shipped as found
 
     return found()
+
+
+def _require_connected(recipe: Recipe) -> None:
+    """Raises: AbstractionError: its parts do not hang together, whatever the direction."""
+    from foldfab.scaffold.abstract import check_connected
+
+    try:
+        check_connected(recipe)
+    except AbstractionError as error:
+        raise AbstractionError(f"{recipe.name}: {error}", error.parts) from error
 
 
 def _along(recipe: Recipe, direction: Array) -> FoldSolution:

@@ -7,6 +7,7 @@ from itertools import product
 import numpy as np
 
 from foldfab.geometry.arrays import Array
+from foldfab.geometry.triangles import to_points
 from foldfab.recipe.model import Mesh
 
 _AT_ONCE = 1 << 18
@@ -32,7 +33,7 @@ def to_surface(points: Array, mesh: Mesh) -> Array:
     step = max(1, _AT_ONCE // len(points))
     for start in range(0, len(corners), step):
         some = corners[start : start + step]
-        nearest = np.minimum(nearest, _squared(points, some).min(1))
+        nearest = np.minimum(nearest, to_points(points[:, None], some).min(1))
     found: Array = np.sqrt(nearest)
     return found
 
@@ -49,31 +50,3 @@ def _near(points: Array, corners: Array) -> Array:
         away = np.sqrt(((middle - point) ** 2).sum(1))
         kept |= away - reach <= away.min() * (1 + _ROUNDING)
     return corners[kept]
-
-
-def _squared(points: Array, corners: Array) -> Array:
-    """(n, m) squared distances of points (n, 3) to triangles (m, 3, 3)."""
-    a = corners[:, 0]
-    first, second = corners[:, 1] - a, corners[:, 2] - a
-    normal = np.cross(first, second)
-    area = np.einsum("ij,ij->i", normal, normal)
-    offset = points[:, None] - a
-    with np.errstate(divide="ignore", invalid="ignore"):
-        height = np.einsum("nmj,mj->nm", offset, normal)
-        u = np.einsum("nmj,mj->nm", offset, np.cross(second, normal)) / area
-        v = np.einsum("nmj,mj->nm", offset, np.cross(normal, first)) / area
-        inside = (u >= 0) & (v >= 0) & (u + v <= 1) & (area > 0)
-        found = np.where(inside, height**2 / area, np.inf)
-    for index in range(3):
-        found = np.minimum(found, _to_edge(points, corners[:, index], corners[:, (index + 1) % 3]))
-    return found
-
-
-def _to_edge(points: Array, start: Array, end: Array) -> Array:
-    edge = end - start
-    length = np.maximum(np.einsum("ij,ij->i", edge, edge), 1e-300)
-    offset = points[:, None] - start
-    share = np.clip(np.einsum("nmj,mj->nm", offset, edge) / length, 0.0, 1.0)
-    rest = offset - share[:, :, None] * edge
-    found: Array = np.einsum("nmj,nmj->nm", rest, rest)
-    return found

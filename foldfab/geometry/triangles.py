@@ -16,6 +16,8 @@ _NO_LENGTH = 1e-300
 """mm²; what is divided by instead of an edge or triangle without any."""
 _ALL_AROUND = 0.95
 """Share of all directions in which a surface is seen from within; through a missing side one sees more of the rest."""
+_AT_ONCE = 1 << 16
+"""Triangles that are looked at at once, so that many take little memory."""
 _SIDES = ((0, 1), (1, 2), (2, 0))
 
 
@@ -51,11 +53,14 @@ def between(a: Array, b: Array) -> Array:
 
 def is_inside(point: Array, corners: Array) -> bool:
     """Whether a point (3,) lies within a surface of triangles (n, 3, 3) that closes, all but for small holes."""
-    a, b, c = np.moveaxis(corners - point, 1, 0)
-    la, lb, lc = (np.linalg.norm(side, axis=1) for side in (a, b, c))
-    volume = _dot(a, np.cross(b, c))
-    rest = la * lb * lc + _dot(a, b) * lc + _dot(b, c) * la + _dot(c, a) * lb
-    return bool(abs(np.arctan2(volume, rest).sum()) > _ALL_AROUND * 2 * np.pi)
+    seen = 0.0
+    for start in range(0, len(corners), _AT_ONCE):
+        a, b, c = np.moveaxis(corners[start : start + _AT_ONCE] - point, 1, 0)
+        la, lb, lc = (np.linalg.norm(side, axis=1) for side in (a, b, c))
+        volume = _dot(a, np.cross(b, c))
+        rest = la * lb * lc + _dot(a, b) * lc + _dot(b, c) * la + _dot(c, a) * lb
+        seen += float(np.arctan2(volume, rest).sum())
+    return abs(seen) > _ALL_AROUND * 2 * np.pi
 
 
 def _dot(a: Array, b: Array) -> Array:

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import struct
 import subprocess
 import sys
@@ -34,6 +33,15 @@ from print_benchmark import KILOBYTE
 Mesh = tuple[NDArray[np.float64], NDArray[np.int64]]
 """Vertices (n, 3), mm, and faces (m, 3)."""
 
+READING = """
+import resource, sys
+from foldfab.cli import main
+status = main(["recipe", "-q", "--units", "mm", "--up", "z", sys.argv[1]])
+lines = [line.split()[1] for line in open("/proc/self/status") if line.startswith("VmHWM")]
+print(*lines, resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss, file=sys.stderr)
+sys.exit(status)
+"""
+"""`ru_maxrss` of a process counts what it was forked from as well; so Linux is asked for what it took itself."""
 COLUMNS, SHELVES, BOARDS = 4, 8, 4
 """Eight posts in two rows of four, and eight shelves of four boards: 40 parts."""
 TABLE = Table(
@@ -62,16 +70,11 @@ def main() -> int:
 
 def read(path: Path) -> tuple[int | None, float, float]:
     """How many parts the file is understood as, seconds, and peak memory, MB."""
-    command = [sys.executable, "-m", "foldfab.cli", "recipe", "-q", "--units", "mm", "--up", "z", str(path)]
-    with tempfile.TemporaryFile() as out:
-        start = time.perf_counter()
-        child = subprocess.Popen(command, stdout=out)
-        _, status, usage = os.wait4(child.pid, 0)
-        seconds = time.perf_counter() - start
-        child.returncode = os.waitstatus_to_exitcode(status)
-        out.seek(0)
-        found = len(json.load(out)["parts"]) if child.returncode == 0 else None
-    return found, seconds, usage.ru_maxrss * KILOBYTE / 1e6
+    start = time.perf_counter()
+    child = subprocess.run([sys.executable, "-c", READING, str(path)], capture_output=True, text=True)
+    seconds = time.perf_counter() - start
+    found = len(json.loads(child.stdout)["parts"]) if child.returncode == 0 else None
+    return found, seconds, max(map(int, child.stderr.split())) * KILOBYTE / 1e6
 
 
 def places() -> dict[str, tuple[tuple[float, ...], tuple[float, ...], bool]]:

@@ -56,10 +56,11 @@ def handed(array: Floats) -> Floats:
 
 
 def _is_frozen(values: object, kind: type) -> TypeGuard[Any]:
-    """Whether it is an array of that kind with memory of its own that nobody writes to."""
-    if not isinstance(values, np.ndarray) or values.base is not None:
+    """Whether it is an array of that kind, or all or part of one, that nobody writes to."""
+    whole = values.base if isinstance(values, np.ndarray) and values.base is not None else values
+    if not isinstance(values, np.ndarray) or not isinstance(whole, np.ndarray) or whole.base is not None:
         return False
-    return values.dtype == kind and not values.flags.writeable
+    return values.dtype == kind and not values.flags.writeable and not whole.flags.writeable
 
 
 def _require_shape(array: Array | Indices, shape: tuple[int, ...]) -> None:

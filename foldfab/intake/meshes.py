@@ -92,9 +92,13 @@ def distinct(rows: Array) -> tuple[Array, Indices]:
     order = np.lexsort(rows.T[::-1])
     ordered = rows[order]
     starts = np.concatenate([np.ones(min(1, len(rows)), dtype=bool), (ordered[1:] != ordered[:-1]).any(1)])
+    found = ordered[starts]
+    del ordered
+    count = np.cumsum(starts)
+    count -= 1
     which = np.empty(len(rows), dtype=np.int64)
-    which[order] = np.cumsum(starts) - 1
-    return ordered[starts], which
+    which[order] = count
+    return found, handed(which)
 
 
 def _welded(mesh: Mesh) -> Indices:

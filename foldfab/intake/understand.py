@@ -10,19 +10,19 @@ import numpy as np
 
 from foldfab.geometry.arrays import Array
 from foldfab.intake.distance import off_box
+from foldfab.intake.hardware import Sizes, sizes
 from foldfab.intake.limits import check_bodies, fail
 from foldfab.intake.meshes import joined, shells
 from foldfab.intake.model import Body, Shapes, Wishes
 from foldfab.intake.naming import NAMELESS, is_nameless, part_name, unique
 from foldfab.intake.notes import listed, note
+from foldfab.intake.outline import Outline, main_axes, outline
 from foldfab.intake.scale import check, in_millimetres
-from foldfab.intake.tight import fitted, hull, least, main_frame, settled
+from foldfab.intake.tight import fitted, settled
 from foldfab.recipe.form import FARTHEST, SMALLEST_SIZE
 from foldfab.recipe.model import Mesh, Part
 from foldfab.recipe.names import fits
 
-HARDWARE = 0.02
-"""A body whose longest side is less than this share of the furniture's is hardware: screws, pins, glides."""
 THINNEST = 1.0
 """mm; a sheet without thickness gets this one."""
 IS_BOX = 0.05
@@ -58,15 +58,6 @@ class Understood:
     """What was left out because it is small, mm."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Outline:
-    """A body's hull, and its smallest box."""
-
-    body: Body
-    corners: Array
-    axes: Array
-
-
 def named(path: Path | str, shapes: Shapes, wishes: Wishes) -> tuple[list[Body], tuple[str, ...]]:
     """The bodies in true mm, Z up, under safe and unique names, in the order of the file; and what had to be supposed.
 
@@ -88,9 +79,11 @@ def parts(path: Path | str, bodies: list[Body], wishes: Wishes, grouping: Groupi
     bodies = _merged(_without(bodies, grouping.ignored, notes), grouping.merged)
     if not bodies:
         fail(path, "nothing is left of it; ignore less")
-    bodies, hardware = _without_hardware(bodies, wishes.smallest, grouping, notes)
-    outlines = [outline for outline in map(_outline, bodies) if outline is not None]
-    note(notes, "without area, left out", {b.name for b in bodies} - {outline.body.name for outline in outlines})
+    measured = sizes(bodies, wishes.smallest)
+    bodies, hardware = _without_hardware(bodies, measured, grouping, notes)
+    known = measured.outlines
+    outlines = [found for b in bodies if (found := known[b.name] if b.name in known else outline(b)) is not None]
+    note(notes, "without area, left out", {b.name for b in bodies} - {found.body.name for found in outlines})
     if not outlines:
         fail(path, "nothing in it has an area")
     return Understood(_boxed(path, outlines, notes), tuple(notes), tuple(body.mesh for body in hardware))
@@ -125,42 +118,31 @@ def _merged(bodies: list[Body], merged: tuple[tuple[str, str], ...]) -> list[Bod
 
 
 def _without_hardware(
-    bodies: list[Body], smallest: float | None, grouping: Grouping, notes: list[str]
+    bodies: list[Body], measured: Sizes, grouping: Grouping, notes: list[str]
 ) -> tuple[list[Body], list[Body]]:
     """What is left, and what is not."""
     kept = (*grouping.kept, *(name for _, name in grouping.merged))
-    low = np.array([body.mesh.vertices.min(0) for body in bodies])
-    high = np.array([body.mesh.vertices.max(0) for body in bodies])
-    limit = HARDWARE * float((high.max(0) - low.min(0)).max()) if smallest is None else smallest
-    is_small = (np.linalg.norm(high - low, axis=1) <= limit).tolist()
-    small = {body.name for body, small in zip(bodies, is_small, strict=True) if small}
-    gone = {name for name in small if not any(fits(name, pattern) for pattern in kept)}
-    note(notes, f"no longer than {limit:.4g} mm, left out as hardware (--smallest)", gone)
+    gone = {name for name in measured.small if not any(fits(name, pattern) for pattern in kept)}
+    note(notes, f"no longer than {measured.limit:.4g} mm, left out as hardware (--smallest)", gone)
     return [body for body in bodies if body.name not in gone], [body for body in bodies if body.name in gone]
 
 
-def _outline(body: Body) -> _Outline | None:
-    """None where it has no area."""
-    corners, normals = hull(body.mesh.vertices)
-    return _Outline(body, corners, least(corners, normals)) if len(normals) else None
-
-
-def _boxed(path: Path | str, outlines: list[_Outline], notes: list[str]) -> tuple[Part, ...]:
-    main = main_frame([o.corners for o in outlines], [o.axes for o in outlines])
+def _boxed(path: Path | str, outlines: list[Outline], notes: list[str]) -> tuple[Part, ...]:
+    main = main_axes(outlines)
     off: dict[str, float] = {}
     thin: list[str] = []
     found = []
-    for outline in outlines:
-        axes = settled(outline.corners, outline.axes, main)
-        center, size = fitted(outline.corners, axes)
+    for one in outlines:
+        axes = settled(one.corners, one.axes, main)
+        center, size = fitted(one.corners, axes)
         if max(np.abs(center).max(), size.max()) > FARTHEST:
-            fail(path, f"reaches further than {FARTHEST:.0f} mm; is the unit right? (--units)", outline.body.name)
-        distance = off_box(outline.body.mesh, center, axes, size)
+            fail(path, f"reaches further than {FARTHEST:.0f} mm; is the unit right? (--units)", one.body.name)
+        distance = off_box(one.body.mesh, center, axes, size)
         if distance > WORTH_SAYING * size.max():
-            off[outline.body.name] = distance
+            off[one.body.name] = distance
         if size.min() < SMALLEST_SIZE:
-            thin.append(outline.body.name)
-        found.append(_part(outline.body.name, center, size, axes, outline.body.mesh if distance > IS_BOX else None))
+            thin.append(one.body.name)
+        found.append(_part(one.body.name, center, size, axes, one.body.mesh if distance > IS_BOX else None))
     note(notes, f"sheets without thickness, taken as {THINNEST:g} mm thick", thin)
     if off:
         told = [f"{name} {distance:.3g} mm" for name, distance in sorted(off.items(), key=lambda item: -item[1])]

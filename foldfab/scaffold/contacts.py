@@ -64,9 +64,10 @@ def contacts_of(recipe: Recipe, parts: tuple[Segment, ...], thickness: float) ->
         one, other = np.array([[place[name] for name in names] for names in apart]).T
         is_lump = overlaps(thin[one], thin[other]).tolist()
     lumps = [names for names, lump in zip(apart, is_lump, strict=True) if lump] if apart else []
-    notes = tuple(f"{a} and {b} touch in print, where both are plates, although their shapes do not" for a, b in lumps)
+    notes = [f"{a} and {b} touch in print, where both are plates, although their shapes do not" for a, b in lumps]
     tolerance = reach(2 * np.array([part.half for part in parts]))
-    return Contacts(tolerance, frozenset(recipe.touching), frozenset(apart) - frozenset(lumps)), notes
+    notes += _stretched(recipe.touching, parts, tolerance)
+    return Contacts(tolerance, frozenset(recipe.touching), frozenset(apart) - frozenset(lumps)), tuple(notes)
 
 
 def require_connected(parts: tuple[Segment, ...], contacts: Contacts, scale: float) -> None:
@@ -99,6 +100,18 @@ def listed(names: tuple[str, ...]) -> str:
     """The first of some names, and how many more there are."""
     shown = ", ".join(names[:5])
     return shown if len(names) <= 5 else f"{shown} and {len(names) - 5} more"
+
+
+def _stretched(touching: tuple[Pair, ...], parts: tuple[Segment, ...], tolerance: float) -> list[str]:
+    """A note on each pair that is further apart than what touches by itself."""
+    if not touching:
+        return []
+    place = {part.name: index for index, part in enumerate(parts)}
+    one, other = np.array([[place[name] for name in names] for names in touching]).T
+    solids = seg.as_boxes(parts)
+    away = gaps(solids[one], solids[other]).tolist()
+    pairs = zip(touching, away, strict=True)
+    return [f"{a} and {b} are stretched to meet, by {gap:.1f} mm in print" for (a, b), gap in pairs if gap > tolerance]
 
 
 def _thinned(boxes: Boxes, thickness: float) -> Boxes:

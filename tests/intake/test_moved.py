@@ -42,7 +42,7 @@ def from_file(file: Path, like: Recipe, way: Array, factor: float) -> Recipe:
 def facts(solution: FoldSolution) -> tuple[list[tuple[object, ...]], list[float]]:
     """What no motion may change: how each patch folds, and how much of the patches is kept.
 
-    To which side a patch folds, and which of several windows is taken that cost the same, is seen from where one stands.
+    To which side a patch folds, and which is taken of windows that cost the same, is seen from where one stands.
     """
     changed = solution.modifications
     kept = sorted(round(m.window[1] - m.window[0], 9) for m in changed)

@@ -29,8 +29,10 @@ def test_a_wall_reaches_up_to_the_board_that_it_is_said_to_touch(
     parts = (board_at("ground", 0), board_at("top", 120), wall_at("leg", 0, 0, 84))
     with pytest.raises(AbstractionError, match=r"top is 36 mm from leg.*\"touching\": \[\[\"top\", \"leg\"\]\]"):
         made(recipe, parts)
-    leg = made(recipe, parts, touching=(("leg", "top"),)).patch("leg")
+    found = made(recipe, parts, touching=(("leg", "top"), ("ground", "leg")))
+    leg = found.patch("leg")
     assert (leg.lower, leg.upper) == ("ground", "top")
+    assert found.notes == ("leg and top are stretched to meet, by 36.0 mm in print",)
     assert leg.length == pytest.approx(120)
 
 

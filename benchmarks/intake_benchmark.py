@@ -6,6 +6,7 @@ A rack of 40 parts, no two of them boxes: round posts, and boards that swell to 
 triangles together. It is written in each format, and `foldfab recipe` reads it in a process of its own.
 
 seconds   of the clock, from start to end, imports and all
+CPU       seconds that the processor worked for it, which other work on the machine changes less
 peak      most resident memory of that process or of one that it started, MB
 
 STEP has faces and no triangles: it is the same rack with true cylinders and rounded edges, at whatever fineness.
@@ -15,6 +16,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import resource
 import struct
 import subprocess
 import sys
@@ -47,7 +49,7 @@ COLUMNS, SHELVES, BOARDS = 4, 8, 4
 TABLE = Table(
     (
         Column("format", 6), Column("triangles", 9), Column("file MB", 7, ".1f"), Column("parts", 5),
-        Column("seconds", 7, ".2f"), Column("peak MB", 7, ".0f"),
+        Column("seconds", 7, ".2f"), Column("CPU", 7, ".2f"), Column("peak MB", 7, ".0f"),
     )
 )  # fmt: skip
 
@@ -68,13 +70,19 @@ def main() -> int:
     return 0
 
 
-def read(path: Path) -> tuple[int | None, float, float]:
-    """How many parts the file is understood as, seconds, and peak memory, MB."""
-    start = time.perf_counter()
+def read(path: Path) -> tuple[int | None, float, float, float]:
+    """How many parts the file is understood as, seconds of the clock and of the processor, and peak memory, MB."""
+    before, start = worked(), time.perf_counter()
     child = subprocess.run([sys.executable, "-c", READING, str(path)], capture_output=True, text=True)
     seconds = time.perf_counter() - start
     found = len(json.loads(child.stdout)["parts"]) if child.returncode == 0 else None
-    return found, seconds, max(map(int, child.stderr.split())) * KILOBYTE / 1e6
+    return found, seconds, worked() - before, max(map(int, child.stderr.split())) * KILOBYTE / 1e6
+
+
+def worked() -> float:
+    """Seconds that the processor worked for processes that this one started and that have ended."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
 def places() -> dict[str, tuple[tuple[float, ...], tuple[float, ...], bool]]:

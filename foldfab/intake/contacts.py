@@ -110,7 +110,10 @@ def _held(parts: tuple[Part, ...], boxes: Boxes, hardware: tuple[Mesh, ...], wit
 
 def _clipped(a: Array, b: Array, within: float) -> tuple[Array, Array]:
     """The triangles of both that reach into what the other may."""
-    return a[_meeting(a, b, within)], b[_meeting(b, a, within)]
+    if not len(a) or not len(b):
+        return a[:0], b[:0]
+    bounds_a, bounds_b = _bounds(a), _bounds(b)
+    return a[_meeting(bounds_a, bounds_b, within)], b[_meeting(bounds_b, bounds_a, within)]
 
 
 def _surfaces_are_close(a: Array, b: Array, within: float) -> bool:
@@ -120,16 +123,12 @@ def _surfaces_are_close(a: Array, b: Array, within: float) -> bool:
     return _corners_are_close(a, b, within) or is_too_fine or _any_pair(a, b, within)
 
 
-def _meeting(a: Array, b: Array, within: float) -> Bools:
-    """Which triangles of `a` reach into the bounds around `b`, grown."""
-    if not len(b):
-        return np.zeros(len(a), dtype=bool)
-    low, high = b.reshape(-1, 3).min(0) - within, b.reshape(-1, 3).max(0) + within
+def _meeting(a: tuple[Array, Array], b: tuple[Array, Array], within: float) -> Bools:
+    """Which triangles with bounds `a` reach into the bounds of all with bounds `b`, grown."""
+    found = np.ones(len(a[0]), dtype=bool)
     # Column by column, as rows of three are what numpy is slowest at.
-    low_a, high_a = _bounds(a)
-    found = np.ones(len(a), dtype=bool)
     for k in range(3):
-        found &= (low_a[:, k] <= high[k]) & (high_a[:, k] >= low[k])
+        found &= (a[0][:, k] <= b[1][:, k].max() + within) & (a[1][:, k] >= b[0][:, k].min() - within)
     return found
 
 

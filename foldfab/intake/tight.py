@@ -116,7 +116,8 @@ def fitted(corners: Array, axes: Frame) -> tuple[Array, Array]:
 
 def volume(corners: Array, axes: Frame) -> float:
     """Of the box with these axes; a sheet's counts as if it had some thickness."""
-    size = np.ptp(corners @ axes.T, axis=0)
+    # Along rows, which numpy is fastest at.
+    size = np.ptp(axes @ corners.T, axis=1)
     return float(np.maximum(size, FLAT * size.max()).prod())
 
 
@@ -210,8 +211,8 @@ def _outermost(corners: Array, normals: Array) -> Array:
     height = 1 - (2 * np.arange(_FEW) + 1) / _FEW
     across = np.sqrt(1 - height**2)
     spread = np.stack([across * np.cos(turn), across * np.sin(turn), height], axis=1)
-    along = corners @ np.concatenate([spread, normals, -normals]).T
-    return np.unique(np.argmax(along / np.ptp(corners, axis=0).max(), axis=0))
+    along = np.concatenate([spread, normals, -normals]) @ corners.T
+    return np.unique(np.argmax(along, axis=1))
 
 
 def _refined(corners: Array, frame: Frame) -> Frame:

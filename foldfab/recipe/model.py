@@ -130,13 +130,19 @@ class Printer:
     """mm, x × y × z."""
 
 
+USUAL_THICKNESS = 4.0
+"""K where nobody says another, mm."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PrintOptions:
     """How the model is to be printed."""
 
     printer: Printer
-    thickness: float = 4.0
+    thickness: float = USUAL_THICKNESS
     """K, the thickness of plates and panels, mm in print."""
+    may_thin: bool = field(default=False, compare=False)
+    """Whether K may be less than that, where the furniture folds whole only then."""
     base_thickness: float | None = None
     """The thickness of base plates, mm in print; None where it is K."""
     own_thickness: bool = False
@@ -169,7 +175,7 @@ class Recipe:
 
     name: str
     direction: Array | None
-    """(3,) unit folding direction d; None tries all six axis directions."""
+    """(3,) unit folding direction d; None takes the best of those that are tried."""
     parts: tuple[Part, ...]
     fold: FoldOptions
     print: PrintOptions
@@ -183,6 +189,8 @@ class Recipe:
     """Parts that touch although their boxes are apart, sorted."""
     apart: tuple[Pair, ...] = ()
     """Parts that do not touch although their boxes do, sorted."""
+    why: str = ""
+    """Why it folds along its direction, where that was chosen for the maker."""
 
     def __post_init__(self) -> None:
         if self.direction is not None:

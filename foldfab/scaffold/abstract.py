@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 from foldfab.errors import AbstractionError
@@ -19,6 +20,8 @@ from foldfab.scaffold.split import cut
 
 STEEP_THICKNESSES = 1.5
 """A base that slopes by more than this many panel thicknesses is printed level, and a note says so."""
+RAIL_THICKNESSES = 5.0
+"""A part that touches no base is a rail where it is no higher than this many panel thicknesses."""
 MOST_OWN = 20.0
 """mm in print; what is thicker of its own is printed as thick as this."""
 STUB_THICKNESSES = 2.5
@@ -38,12 +41,16 @@ def abstract(recipe: Recipe, direction: Array, scale: float) -> Scaffold:
     require_connected(parts, contacts, scale)
     stub = STUB_THICKNESSES * thickness
     layout, patches, notes = _laid_out(parts, contacts, stub, thickness + gap)
-    loose = set(_loose(parts, layout, patches))
-    level = {s.name for s in parts if s.name in loose and seg.is_level(s)}
-    if level:
-        # A rail that touches no base can be one: it lies level, and what it touches folds.
-        parts = tuple(seg.as_base(s) if s.name in level else s for s in parts)
-        layout, patches, notes = _laid_out(parts, contacts, stub, thickness + gap)
+    cornered: frozenset[str] = frozenset()
+    # A rail that touches no base can be one: it lies level, and what it touches folds. A part that is as high as the
+    # others belongs to the base of an end that it meets at a corner; where it meets none it is printed level as well.
+    for most, has_corners in ((RAIL_THICKNESSES * thickness, False), (0.0, True), (math.inf, True)):
+        loose = set(_loose(parts, layout, patches))
+        level = {s.name for s in parts if s.name in loose and seg.is_level(s) and seg.slope(s) <= most}
+        cornered |= frozenset(loose - level if has_corners else ())
+        if level or (loose and has_corners):
+            parts = tuple(seg.as_base(s) if s.name in level else s for s in parts)
+            layout, patches, notes = _laid_out(parts, contacts, stub, thickness + gap, cornered)
     if not layout.bases:
         names = tuple(s.name for s in parts)
         raise AbstractionError(
@@ -78,10 +85,14 @@ def _thickest(recipe: Recipe, names: tuple[str, ...], scale: float, *, is_base: 
 
 
 def _laid_out(
-    parts: tuple[Segment, ...], contacts: Contacts, stub: float, distance: float
+    parts: tuple[Segment, ...],
+    contacts: Contacts,
+    stub: float,
+    distance: float,
+    cornered: frozenset[str] = frozenset(),
 ) -> tuple[Layout, tuple[Patch, ...], tuple[str, ...]]:
     leaves = sheets(tuple(s for s in parts if not s.is_base), distance)
-    layout = find_bases(tuple(s for s in parts if s.is_base), leaves, contacts, stub)
+    layout = find_bases(tuple(s for s in parts if s.is_base), leaves, contacts, stub, cornered)
     return layout, *cut(leaves, layout, stub)
 
 

@@ -50,7 +50,13 @@ class Layout:
     """By sheet, its lines that lie in a base patch, lowest first."""
 
 
-def find_bases(parts: tuple[Segment, ...], leaves: tuple[Sheet, ...], contacts: Contacts, stub: float) -> Layout:
+def find_bases(
+    parts: tuple[Segment, ...],
+    leaves: tuple[Sheet, ...],
+    contacts: Contacts,
+    stub: float,
+    cornered: frozenset[str] = frozenset(),
+) -> Layout:
     """The base patches of the parts perpendicular to d and of the sheets' ends.
 
     Args:
@@ -58,6 +64,7 @@ def find_bases(parts: tuple[Segment, ...], leaves: tuple[Sheet, ...], contacts: 
         leaves: the sheets that fold.
         contacts: which of them touch.
         stub: shorter pieces of a sheet than this cannot fold and are trimmed, mm.
+        cornered: parts whose ends belong to the base of an end that they meet at a corner.
     """
     touching: list[list[int]] = [[] for _ in leaves]
     joints: list[tuple[int, int]] = []
@@ -73,7 +80,7 @@ def find_bases(parts: tuple[Segment, ...], leaves: tuple[Sheet, ...], contacts: 
     for k, members in enumerate(touched, len(parts)):
         for j in members:
             whole.join(k, j)
-    for k, other in _meeting_ends(leaves, lines, contacts):
+    for k, other in _meeting_ends(leaves, lines, contacts, cornered):
         whole.join(len(parts) + k, len(parts) + other)
     is_needed = _connecting(Groups(len(parts), joints), touched)
     stated = contacts.stated(of_leaves, of_parts)
@@ -126,10 +133,13 @@ def _with_ends(
     return [ends[0], *((height, members, 0) for height, members in inner), ends[1]]
 
 
-def _meeting_ends(leaves: tuple[Sheet, ...], lines: list[Line], contacts: Contacts) -> list[tuple[int, int]]:
+def _meeting_ends(
+    leaves: tuple[Sheet, ...], lines: list[Line], contacts: Contacts, cornered: frozenset[str]
+) -> list[tuple[int, int]]:
     """Which lines, by their numbers, are ends of different sheets that meet along their length.
 
     Ends that only meet at a corner are left apart: they would make a base out of air where two T-scaffolds fold freely.
+    Ends of `cornered` parts are not: these have no other base to fold onto.
     """
     ends = [k for k, line in enumerate(lines) if line.end]
     if not ends:
@@ -138,8 +148,10 @@ def _meeting_ends(leaves: tuple[Sheet, ...], lines: list[Line], contacts: Contac
     found = []
     for i, j in _pairs(strips, strips):
         a, b = lines[ends[i]].sheet, lines[ends[j]].sheet
-        is_apart = contacts.are_apart(leaves[a].parts, leaves[b].parts)
-        if a < b and abs(leaves[a].along @ leaves[b].along) > ALIGNED and not is_apart:
+        is_corner = abs(leaves[a].along @ leaves[b].along) <= ALIGNED
+        if contacts.are_apart(leaves[a].parts, leaves[b].parts):
+            continue
+        if a < b and (not is_corner or not cornered.isdisjoint(leaves[a].parts + leaves[b].parts)):
             found.append((ends[i], ends[j]))
     return found
 

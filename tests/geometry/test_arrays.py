@@ -60,3 +60,17 @@ def test_what_somebody_can_still_write_to_is_copied() -> None:
         copy = frozen(given, 2)
         assert not np.shares_memory(copy, given)
         assert copy.dtype == np.float64
+
+
+def test_a_frozen_array_of_another_shape_is_refused() -> None:
+    with pytest.raises(ValueError, match="expected shape"):
+        frozen(frozen([1.0, 2.0], 2), 3)
+
+
+def test_a_read_only_view_is_copied() -> None:
+    source = np.zeros(3)
+    view = source[:]
+    view.setflags(write=False)
+    copy = frozen(view, 3)
+    source[0] = 1.0
+    assert copy.tolist() == [0.0, 0.0, 0.0]

@@ -37,7 +37,10 @@ _SHAPES = (
     ("--smallest", "MM", "bodies no longer than this are hardware, left out (2 %% of the furniture's longest side)"),
 )
 _SLICER = "--slicer"
-_REPEATED = (("--rigid", "NAME", "a part that must not get a hinge in its middle; may be given again for others"),)
+_REPEATED = (
+    ("--rigid", "NAME", "a part that must not get a hinge in its middle; may be given again for others"),
+    ("--ignore", "NAME", "parts that are left out, such as cushion*; may be given again for others"),
+)
 
 
 def parser(run: Mapping[str, Run], version: type[argparse.Action]) -> argparse.ArgumentParser:

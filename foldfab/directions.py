@@ -31,8 +31,8 @@ SEARCH = 0.5
 """Seconds of work for each direction, where the recipe allows more; the best one is solved anew with all of them."""
 _WORTH_SAYING = 0.005
 """Shares below this round to nothing."""
-_DIGITS = 6
-"""Of scores: those that agree in them are equal."""
+_DIGITS = 2
+"""Of scores: of those that agree in them the way down is best, as furniture stands, then that along x."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -185,7 +185,7 @@ def _least(solution: FoldSolution, time: float, frames: list[Array]) -> tuple[fl
 
     turn = solution.scaffold.rotation.T
     sizes = [size_at(solution, time, frame @ turn) for frame in frames]
-    x, y, z = min(sizes, key=lambda size: round(float(size.prod()), _DIGITS)).tolist()
+    x, y, z = min(sizes, key=lambda size: round(float(size.prod()), 6)).tolist()
     return x, y, z
 
 

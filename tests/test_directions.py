@@ -69,6 +69,12 @@ def test_a_board_set_on_edge_is_lost(recipe: Make, box: Box) -> None:
     assert across.score < rows["z"].best.score
 
 
+def test_where_most_is_lost_it_is_not_this_furniture(recipe: Make, box: Box) -> None:
+    legs = (box("left", (-80, 0, 35), (50, 4, 70)), box("right", (80, 0, 35), (50, 4, 70)))
+    rows = by_name(ranked(free(recipe((box("top", (0, 0, 72), (200, 30, 4)), *legs)))))
+    assert rows["x"].best.problem == "what folds is another piece: 54 % of this one is laid level (left, right)"
+
+
 def test_opposite_ways_share_a_row(recipe: Make) -> None:
     for row in ranked(free(recipe("table"))):
         assert np.array_equal(row.best.direction, -row.other.direction)

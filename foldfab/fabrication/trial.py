@@ -7,7 +7,8 @@ instant at which the piece is near another body.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
@@ -20,10 +21,10 @@ from foldfab.fabrication.model import Assembly, Latch
 from foldfab.fabrication.plates import ROOT_SHARE, axis_of
 from foldfab.fabrication.posture import needs_pins, printed_turn
 from foldfab.fabrication.printed import printed
-from foldfab.fabrication.shapes import cut, union
+from foldfab.fabrication.shapes import Shape, cut, union
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.stops import Stop
-from foldfab.fabrication.turning import Turn, stops_at, turn
+from foldfab.fabrication.turning import PAST, Turn, stops_at, turn
 from foldfab.fabrication.walls import thin_sides
 from foldfab.folding.kinematics import configuration
 from foldfab.geometry.arrays import Array, Bools
@@ -32,13 +33,33 @@ ROUNDING = 0.01
 """By how much a print may seem to grow, mm."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Change:
+    """What a stop or a latch makes of a body."""
+
+    is_added: bool
+    """Whether there is more of it, or less."""
+    shape: Shape
+
+
+def changed(shape: Shape, changes: Iterable[Change]) -> Shape:
+    """A body of that shape with all changes, in their order."""
+    for change in changes:
+        shape = union([shape, change.shape]) if change.is_added else cut(shape, [change.shape])
+    return shape
+
+
 class Trial:
     """The bodies of a print as they stand, to try pieces on."""
 
     def __init__(
-        self, assembly: Assembly, made: dict[str, Solid], ramps: Mapping[str, list[Solid]] = MappingProxyType({})
+        self,
+        assembly: Assembly,
+        made: dict[str, Solid],
+        ramps: Mapping[str, list[Shape]] = MappingProxyType({}),
+        gives: Mapping[str, list[Solid]] = MappingProxyType({}),
     ) -> None:
-        """`ramps` is what will be cut from bodies once they have their stops."""
+        """`ramps` is what will be cut from bodies once they have their stops, `gives` what gives way already."""
         self.assembly, self.made, self.shapes = assembly, made, dict(assembly.shapes)
         self.poses = configuration(assembly.solution, instants(assembly))
         self._bounds = {name: self._along(name, solid) for name, solid in made.items()}
@@ -48,10 +69,12 @@ class Trial:
         self._extent = np.min([c[0] for c in corners], axis=0), np.max([c[1] for c in corners], axis=0)
         self._feet = list(_feet(assembly))
         self.turns = {j.name: turn(j, *(self.poses[p] for p in j.parts)) for j in assembly.joints}
-        self._ramps = ramps
+        self._ramps = {name: [printed(ramp) for ramp in some] for name, some in ramps.items()}
         self._thin = {name: self._thin_sides(name, solid) for name, solid in made.items()}
-        self.gives: dict[str, list[Solid]] = {}
+        self.gives = {name: list(some) for name, some in gives.items()}
         """By panel, what of it gives way while it passes its latches."""
+        self.changes: dict[str, list[Change]] = {name: [] for name in made}
+        """By body, what stops and latches made of it, in their order."""
         self._parts = {j.name: j.parts for j in assembly.joints}
 
     def angle(self, joint: str, *, is_folded: bool) -> float | None:
@@ -78,13 +101,50 @@ class Trial:
         made = self._with(stop)
         assert made is not None
         self.made = made
-        self.shapes[stop.body] = union([self.shapes[stop.body], stop.added])
+        self._change(stop.body, Change(True, stop.added))
         if stop.cut is not None:
-            self.shapes[stop.other] = cut(self.shapes[stop.other], [stop.cut])
+            self._change(stop.other, Change(False, stop.cut))
         for name in (stop.body, stop.other):
-            self._bounds[name] = self._along(name, made[name])
-            low, high = self._printed(name, made[name])
-            self._extent = np.minimum(low, self._extent[0]), np.maximum(high, self._extent[1])
+            self._took(name)
+
+    def _change(self, name: str, change: Change) -> None:
+        self.changes[name].append(change)
+        self.shapes[name] = changed(self.shapes[name], [change])
+
+    def reshape(self, name: str, shape: Shape) -> str:
+        """Makes a body of another shape, or says why it cannot be: then it stays as it is."""
+        solid = solids.tidied(printed(shape))
+        problem = self._problem(name, solid)
+        if not problem:
+            self.made = {**self.made, name: solid}
+            self.shapes[name] = shape
+            self._took(name)
+        return problem
+
+    def _problem(self, name: str, solid: Solid) -> str:
+        """Why a body cannot become another solid, or nothing."""
+        if solids.pieces(solid) != 1:
+            return "falls apart"
+        if not solids.stays_closed(solid):
+            return "touches itself along an edge"
+        if self._thin_sides(name, solid) > self._thin[name]:
+            return "has walls thinner than a line"
+        if not self._fits(name, solid):
+            return "does not fit the bed"
+        rigid = solids.cut(solid, self.gives.get(name, []))
+        reach = self._along(name, solid)
+        for other in self.made:
+            rest = solids.cut(self.made[other], self.gives.get(other, []))
+            if other != name and not self._is_apart(name, rigid, other, rest, reach):
+                return f"meets {other}"
+        made = {**self.made, name: solid}
+        for joint in (j.name for j in self.assembly.joints if name in j.parts):
+            for is_folded in (False, True):
+                if (self.angle(joint, is_folded=is_folded) or 2 * PAST) <= PAST:
+                    after = self._angle(joint, made, is_folded)
+                    if after is None or after > PAST:
+                        return f"leaves {joint} without a stop"
+        return ""
 
     def latch(self, stop: Stop) -> Latch | None:
         """Makes the latch of a stop that is made, where it holds and lets go."""
@@ -98,10 +158,15 @@ class Trial:
         found = tried(self.turns[stop.joint], base, panel, stop.detent, is_base_first=is_base_first)
         if found is not None:
             self.made = {**self.made, stop.body: panel, stop.other: base}
-            self.shapes[stop.body] = cut(self.shapes[stop.body], [stop.detent.slit])
-            self.shapes[stop.other] = union([self.shapes[stop.other], stop.detent.ridges])
+            self._change(stop.body, Change(False, stop.detent.slit))
+            self._change(stop.other, Change(True, stop.detent.ridges))
             self.gives.setdefault(stop.body, []).append(printed(stop.detent.pressed))
         return found
+
+    def _took(self, name: str) -> None:
+        self._bounds[name] = self._along(name, self.made[name])
+        low, high = self._printed(name, self.made[name])
+        self._extent = np.minimum(low, self._extent[0]), np.maximum(high, self._extent[1])
 
     def _angle(self, joint: str, made: dict[str, Solid], is_folded: bool) -> float | None:
         first, second = self._parts[joint]
@@ -119,9 +184,9 @@ class Trial:
     def _has_room(self, stop: Stop, made: dict[str, Solid]) -> bool:
         if stop.cut is not None and self._is_taken(stop):
             return False
-        if not self._fits(stop):
-            return False
         added = printed(stop.added)
+        if not self._fits(stop.body, added):
+            return False
         reach = self._along(stop.body, added)
         others = [name for name in made if name != stop.body]
         return all(self._is_apart(stop.body, added, name, made[name], reach) for name in others)
@@ -143,12 +208,12 @@ class Trial:
                 return True
         return False
 
-    def _fits(self, stop: Stop) -> bool:
-        """Whether the print, which may fit its bed just so, still fits it."""
+    def _fits(self, name: str, added: Solid) -> bool:
+        """Whether the print, which may fit its bed just so, still fits it with a piece of a body."""
         if needs_pins(self.assembly.posture):
             return True
         bed = np.array(self.assembly.solution.scaffold.recipe.print.printer.build_volume)
-        low, high = self._printed(stop.body, printed(stop.added))
+        low, high = self._printed(name, added)
         low, high = np.minimum(low, self._extent[0]), np.maximum(high, self._extent[1])
         size, now = high - low, self._extent[1] - self._extent[0]
         return bool((size <= bed).all() or (size[[1, 0, 2]] <= bed).all() or (size <= now + ROUNDING).all())

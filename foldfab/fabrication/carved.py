@@ -9,14 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from foldfab.fabrication import solids
-from foldfab.fabrication.free import Motion, free_room
+from foldfab.fabrication.free import Motion, used_room
+from foldfab.fabrication.outlines import KEPT, share_left
 from foldfab.fabrication.places import FAR, Place, zone
 from foldfab.fabrication.printed import printed
 from foldfab.fabrication.shapes import Shape, common, union
 from foldfab.fabrication.solids import Outline, Solid
 
-KEPT = 0.8
-"""The least share of its plate that is left: with less, it is no longer the part that was analysed."""
 LEAST, LEAST_SHARE = 1.2, 0.5
 """Least thickness: three lines of a 0.4 mm nozzle, mm, and a share of the plate."""
 TIP = 0.8
@@ -31,6 +30,11 @@ NARROW = 1.25
 """A part is narrow that reaches no further than this to either side, in thicknesses of panels."""
 SUNK = 0.3
 """What rises from a layer begins this deep in it, mm."""
+INSET, BEYOND = 0.02, 1.0
+"""How far rooms keep from faces of plates and from one another, where faces that coincide would leave slivers; and how
+far they reach beyond a plate, mm."""
+HAIR = 0.06
+"""Half the width of what is not worth a cut, mm."""
 FINE = 0.05
 """How far an outline may be from the solid's own, mm."""
 
@@ -47,61 +51,71 @@ def carved(
     `own` is the part's own solid, open posture, canonical frame, mm. The plain plate stays around hinges and where
     `stays` says, in u and v; `motions` are all other bodies, `gap` is the clearance and `panel` K of the print, mm.
     """
-    laid, seen = place.plane.laid(printed(own)), solids.silhouette(place.plane.laid(printed(plain)))
+    seen = solids.silhouette(place.plane.laid(printed(plain)))
+    # Where a part ends flush with its plate all rooms reach beyond it, and one cut ends it.
+    around, laid = solids.grown(seen, BEYOND), solids.common(place.plane.laid(printed(own)), _raised(seen))
     low, high = place.layer
-    layer = [(seen - zone(place.shy), low, high)]
-    sides = [_beyond(place, laid, is_above, seen, motions, gap, panel) for is_above in (True, False)]
-    least = max(LEAST, LEAST_SHARE * min(high - low, panel))
+    layer = [(around - zone(place.shy), low + INSET, high - INSET)]
+    sides = [_beyond(place, laid, is_above, around, motions, gap, panel) for is_above in (True, False)]
+    least, kept = max(LEAST, LEAST_SHARE * min(high - low, panel)), zone(place.kept) + stays
     for above, below in ((True, True), (True, False), (False, True), (False, False)):
         if (sides[0] or not above) and (sides[1] or not below):
             rooms = layer + sides[0] * above + sides[1] * below
-            yield _filled(place, plain, own, laid, seen, zone(place.kept) + stays, rooms, least)
+            made = solids.common(laid, solids.union([solids.raised(*room) for room in rooms if not room[0].is_empty()]))
+            yield _filled(place, plain, own, made, seen, kept, rooms, _thick_enough(made, kept, least))
 
 
 def _filled(
-    place: Place, plain: Shape, own: Shape, laid: Solid, seen: Outline, kept: Outline, rooms: list[Room], least: float
+    place: Place, plain: Shape, own: Shape, made: Solid, seen: Outline, kept: Outline, rooms: list[Room], thick: Outline
 ) -> Shape | str:
-    """The plain plate where it is kept, and the own solid in the rooms."""
-    rooms = _thick_enough(rooms, laid, kept, least)
-    left, whole = kept, solids.silhouette(laid)
-    for room, _, _ in rooms:
-        left = left + (room ^ whole)
-    share = (left ^ seen).area() / max(seen.area(), 1e-9)
-    columns = [piece for room, low, high in rooms for piece in place.plane.columns(room, low, high)]
-    if share < KEPT or not columns:
+    """The plain plate where it is kept, and the own solid in the rooms where it is thick enough."""
+    share = share_left(kept + thick, seen, place)
+    inset = [(solids.grown(room, -INSET * i), low, high) for i, (room, low, high) in enumerate(rooms)]
+    trim = _without(solids.grown(seen, -INSET), solids.silhouette(made) - thick)
+    columns, ends = ([p for room in some for p in place.plane.columns(*room)] for some in (inset, [(trim, -FAR, FAR)]))
+    if share < KEPT or not columns or not ends:
         return f"would leave {share:.0%} of it, because it is thin or leaves the layer that it folds in"
     core = [common(plain, union(place.plane.columns(kept, -FAR, FAR)))] if not kept.is_empty() else []
-    return union([*core, common(own, union(columns))])
+    return union([*core, common(common(own, union(ends)), union(columns))])
+
+
+def _raised(outline: Outline) -> Solid:
+    return solids.raised(outline, -FAR, FAR)
 
 
 def _beyond(
-    place: Place, laid: Solid, is_above: bool, seen: Outline, motions: list[Motion], gap: float, panel: float
+    place: Place, laid: Solid, is_above: bool, around: Outline, motions: list[Motion], gap: float, panel: float
 ) -> list[Room]:
-    """The free room at one side of the layer."""
+    """The free room at one side of the layer, within what lies around the plate."""
     face = place.layer[int(is_above)]
     sunk = min(SUNK, (place.layer[1] - place.layer[0]) / 2)
-    most = FAR if _is_narrow(seen, panel) else RISES * panel
-    wanted = (solids.silhouette(laid) ^ seen).area()
+    most = FAR if _is_narrow(around, panel) else RISES * panel
+    whole = solids.silhouette(laid)
     found = []
-    for free, height in free_room(place, laid, is_above, most, motions, gap):
-        room = _smooth(free ^ seen)
-        if room.area() >= MUCH * wanted:
+    for used, height in used_room(place, laid, is_above, most, motions, gap):
+        free = around - used - zone(place.bare[int(is_above)])
+        room = _without(free, (free ^ whole) - _smooth(free ^ whole))
+        if (room ^ whole).area() >= MUCH * whole.area():
             low, high = sorted((face - sunk if is_above else face + sunk, height))
             found.append((room, low, high))
     return found
 
 
-def _is_narrow(seen: Outline, panel: float) -> bool:
-    return bool(solids.grown(seen, -NARROW * panel).is_empty())
+def _is_narrow(around: Outline, panel: float) -> bool:
+    return bool(solids.grown(around, -BEYOND - NARROW * panel).is_empty())
 
 
-def _thick_enough(rooms: list[Room], laid: Solid, kept: Outline, least: float) -> list[Room]:
-    """The rooms without columns in which the solid is too thin, and without what then hangs on nothing."""
-    made = solids.common(laid, solids.union([solids.raised(room, a, b) for room, a, b in rooms if not room.is_empty()]))
+def _thick_enough(made: Solid, kept: Outline, least: float) -> Outline:
+    """Where a solid is thick enough, but for what then hangs on nothing that is kept."""
     thick = _smooth(solids.silhouette(solids.common(made, solids.shifted(made, least))))
     pieces = solids.islands(thick + kept)
-    whole = max(pieces, key=lambda piece: piece.area()) if pieces else thick
-    return [(room ^ thick ^ whole, low, high) for room, low, high in rooms]
+    return thick ^ max(pieces, key=lambda piece: piece.area()) if pieces else thick
+
+
+def _without(room: Outline, gone: Outline) -> Outline:
+    """A room without what is gone from it, a little more than that, but for hair lines."""
+    wide = solids.grown(solids.grown(gone, -HAIR), HAIR) ^ gone
+    return room - solids.grown(wide, HAIR / 2)
 
 
 def _smooth(outline: Outline) -> Outline:

@@ -1,7 +1,7 @@
 """The room beside a plate that nothing else uses at any instant of the fold.
 
-It is found in steps of height: over each stands what no other body, a clearance grown, covers between the plate and
-that height while everything folds. Between two instants nothing moves further than `STEP`. Costs a section of each
+It is found in steps of height: free is what no other body, a clearance grown, covers between the plate and that height
+while everything folds. Between two instants nothing moves further than `STEP`. Costs a section of each
 body that comes near, for each instant and each height.
 """
 
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from foldfab.fabrication import solids
-from foldfab.fabrication.places import Place, zone
+from foldfab.fabrication.places import Place
 from foldfab.fabrication.solids import Outline, Solid
 from foldfab.geometry.arrays import Array
 
@@ -25,8 +25,8 @@ MOST_HEIGHTS = 8
 """But no more of them than this."""
 ASIDE = 1.25
 """How far it keeps away from other bodies, in clearances: instants are not everything."""
-SAME = 1.0
-"""What is covered over two heights is the same where it differs by less, mm²."""
+SAME = 0.02
+"""What is used over two heights is the same where it differs by less than this share of what is sought."""
 STILL = 1e-6
 """Poses that differ by less are the same."""
 
@@ -41,10 +41,10 @@ class Motion:
     """(k, 4, 4) from there into u, v and w of the plate."""
 
 
-def free_room(
+def used_room(
     place: Place, wanted: Solid, is_above: bool, most: float, motions: list[Motion], gap: float
 ) -> list[tuple[Outline, float]]:
-    """Outlines that are free from the plate to a height in w, the highest last, none of them empty.
+    """What others use, with the clearance, between a plate and some heights in w, the highest last.
 
     Only what `wanted` would fill is looked at, a solid in u, v and w, and that up to `most` mm beyond the layer; the
     clearance is `gap`, mm.
@@ -56,21 +56,21 @@ def free_room(
         return []
     count = min(MOST_HEIGHTS, int(np.ceil(reach / RISE)))
     heights = [face + reach * (i + 1) / count for i in range(count)]
-    sought = solids.silhouette(solids.between(turned, face, heights[-1])) - zone(place.bare[int(is_above)])
+    sought = solids.silhouette(solids.between(turned, face, heights[-1]))
     if sought.is_empty():
         return []
-    margin = ASIDE * gap
+    margin, same = ASIDE * gap, SAME * sought.area()
     top = heights[-1] + margin
     pieces = [p for motion in motions for p in _pieces(motion, way, face, top, sought, margin)]
     used = {count - 1: _covered(pieces, face, top), -1: solids.nothing()}
-    for i in _halves(-1, count - 1, lambda low, high: used[high].area() - used[low].area() > SAME):
+    for i in _halves(-1, count - 1, lambda low, high: used[high].area() - used[low].area() > same):
         used[i] = _covered(pieces, face, heights[i] + margin)
     found: list[tuple[Outline, float]] = []
     for i in sorted(used):
-        free = sought - solids.grown(used[i], margin)
-        # Of heights over which the same is free the highest says it all.
-        if i >= 0 and not free.is_empty():
-            found = [f for f in found if f[0].area() - free.area() > SAME] + [(free, way * heights[i])]
+        taken = solids.grown(used[i], margin)
+        if i >= 0:
+            # Of heights up to which the same is used the highest says it all.
+            found = [f for f in found if taken.area() - f[0].area() > same] + [(taken, way * heights[i])]
     return found
 
 

@@ -15,7 +15,9 @@ from foldfab.fabrication.solids import Outline
 from foldfab.geometry.arrays import Array, Indices
 
 KEPT = 0.8
-"""The least share of its plate that an outline has to leave: with less, it is no longer the part that was analysed."""
+"""What is left has to be near this share of its plate: with less, it is no longer the part that was analysed."""
+HALF = 0.4
+"""And it has to be this share itself."""
 SMALL = 2.0
 """Bits of less than this are not cut away, mm²."""
 FINE = 0.05
@@ -33,14 +35,22 @@ def outlined(place: Place, plain: Shape, meshes: list[tuple[Array, Indices]]) ->
     stays = _outline([place.plane.local(points)[:, :2][faces] for points, faces in meshes]) + zone(place.kept)
     # Tips that run out thinner than a few lines are left out with what is cut away.
     left = solids.grown(solids.grown(seen ^ stays, -TIP), TIP)
-    share = left.area() / max(seen.area(), 1e-9)
+    share = share_left(left, seen, place)
     if share < KEPT:
-        return f"its own outline would leave {share:.0%} of it"
+        return f"would leave {share:.0%} of it"
     bits = [bit for bit in _around(seen, left) if (bit ^ seen).area() > SMALL and len(bit.to_polygons()) == 1]
     if not bits:
         return plain
     grown = [solids.grown(bit, FINE / 5) for bit in bits]
     return cut(plain, [hole for bit in grown for hole in place.plane.columns(bit, -FAR, FAR)])
+
+
+def share_left(left: Outline, seen: Outline, place: Place) -> float:
+    """The share of a plate that lies within a thickness of what is left of it; of what is left where that is little."""
+    whole = max(seen.area(), 1e-9)
+    share = (left ^ seen).area() / whole
+    thick = place.layer[1] - place.layer[0]
+    return float((solids.grown(left, thick) ^ seen).area() / whole) if share >= HALF else float(share)
 
 
 def _around(seen: Outline, left: Outline) -> list[Outline]:

@@ -19,7 +19,7 @@ from foldfab.fabrication.free import Motion
 from foldfab.fabrication.furniture import is_own, own_solid, placed_mesh
 from foldfab.fabrication.model import Assembly, Finding
 from foldfab.fabrication.outlines import outlined
-from foldfab.fabrication.places import Place, places
+from foldfab.fabrication.places import Place, places, reaching
 from foldfab.fabrication.shapes import Shape, union
 from foldfab.fabrication.solids import Outline, Solid
 from foldfab.fabrication.stopping import Stopped, reached
@@ -71,6 +71,9 @@ def _candidates(trial: Trial, place: Place, plain: Shape) -> Iterator[tuple[Lite
     """What a body may look like, best first, or why not."""
     scaffold = trial.assembly.solution.scaffold
     parts = _parts(scaffold, place)
+    meshes = [placed_mesh(scaffold, part, place.normal) for part in parts]
+    along = np.concatenate([place.plane.local(points)[:, 0] for points, _ in meshes])
+    place = reaching(place, float(along.min()), float(along.max()))
     found = {part.name: own_solid(scaffold, part, place.normal) for part in parts}
     own = [shape for shape in found.values() if shape is not None]
     if len(own) < len(found):
@@ -81,7 +84,7 @@ def _candidates(trial: Trial, place: Place, plain: Shape) -> Iterator[tuple[Lite
         motions = [_motion(trial, place, name) for name in sorted(trial.made) if name != place.name]
         for shape in carved(place, plain, union(own), _boxes(scaffold, place, parts), motions, gap, panel):
             yield "solid", shape
-    yield "outline", outlined(place, plain, [placed_mesh(scaffold, part, place.normal) for part in parts])
+    yield "outline", outlined(place, plain, meshes)
 
 
 def _motion(trial: Trial, place: Place, name: str) -> Motion:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -101,6 +101,19 @@ def places(solution: FoldSolution) -> Iterator[Place]:
         plane = Plane(np.zeros(3), np.eye(3))
         bare = (tuple(sides[0]), tuple(sides[1]))
         yield Place(base.name, base.parts, plane, (face.bottom, face.top), kept, (), bare)
+
+
+def reaching(place: Place, low: float, high: float) -> Place:
+    """A panel whose plain plate stays from its hinges to where its part begins and ends in u; a base as it is."""
+    if not place.shy:
+        return place
+    kept = [rectangle.copy() for rectangle in place.kept]
+    for rectangle in kept:
+        if rectangle[0, 0] <= -FAR:
+            rectangle[1, 0] = max(rectangle[1, 0], low + WEB)
+        else:
+            rectangle[0, 0] = min(rectangle[0, 0], high - WEB)
+    return replace(place, kept=tuple(kept))
 
 
 def zone(rectangles: tuple[Array, ...]) -> Outline:

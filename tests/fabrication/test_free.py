@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from foldfab.fabrication import solids
-from foldfab.fabrication.free import Motion, free_room
+from foldfab.fabrication.free import Motion, used_room
 from foldfab.fabrication.places import Place, Plane
 from foldfab.fabrication.solids import Solid
 from foldfab.geometry.arrays import Array
@@ -21,12 +21,11 @@ def still(body: Solid) -> Motion:
     return Motion(body, np.tile(np.eye(4), (3, 1, 1)))
 
 
-def areas(
-    *motions: Motion, is_above: bool = True, most: float = 100.0, place: Place = PLACE
-) -> list[tuple[float, float]]:
-    """Heights, and over which area it is free up to there."""
-    found = free_room(place, BLOCK, is_above, most, list(motions), GAP)
-    return [(round(height, 3), round(outline.area(), 1)) for outline, height in found]
+def areas(*motions: Motion, is_above: bool = True, most: float = 100.0) -> list[tuple[float, float]]:
+    """Heights, and over which area of the block nothing is up to there."""
+    whole = solids.silhouette(BLOCK)
+    found = used_room(PLACE, BLOCK, is_above, most, list(motions), GAP)
+    return [(round(height, 3), round((whole - outline).area(), 1)) for outline, height in found]
 
 
 def test_with_nothing_around_all_of_it_is_free() -> None:
@@ -37,8 +36,8 @@ def test_with_nothing_around_all_of_it_is_free() -> None:
 
 def test_below_what_stands_over_it_it_is_free_up_to_the_clearance() -> None:
     roof = solids.box((-5, -5, 5), (45, 25, 9))
-    ((height, area),) = areas(still(roof))
-    assert area == 800.0
+    (height, area), above = areas(still(roof))
+    assert (area, above) == (800.0, (8.0, 0.0))
     assert 5.0 - MARGIN - 0.8 < height <= 5.0 - MARGIN
 
 
@@ -53,12 +52,8 @@ def test_what_only_passes_by_takes_its_way_out_of_it() -> None:
         pose[0, 3] = x
         return pose
 
-    ball = solids.box((-1, 8, 3), (1, 12, 6))
-    ((height, area),) = (found for found in areas(Motion(ball, np.array([at(-30), at(20), at(70)]))) if found[0] > 6)
-    assert (height, area) == (8.0, pytest.approx(40 * (20 - 4 - 2 * MARGIN), rel=0.01))
-
-
-def test_where_hinges_stand_nothing_is_free() -> None:
-    bare = (np.array([[0.0, 0.0], [10.0, 20.0]]),)
-    place = Place("seat", ("seat",), PLACE.plane, PLACE.layer, (), (), ((), bare))
-    assert areas(place=place) == [(8.0, 600.0)]
+    ball = solids.box((-1, 8, 4), (1, 12, 6))
+    ball_goes = Motion(ball, np.array([at(-30), at(20), at(70)]))
+    low, high = areas(ball_goes)
+    assert low == (3.5, 800.0)
+    assert high == (8.0, pytest.approx(40 * (20 - 4 - 2 * MARGIN), rel=0.01))

@@ -137,6 +137,23 @@ def test_a_panel_keeps_its_relief_within_its_layer_and_its_hinges(
         assert max(angle or 90.0 for angle in joint.stop_deg) <= PAST
 
 
+def test_a_round_top_is_round(table: Recipe, scaffold: Callable[..., Scaffold]) -> None:
+    """An ellipse covers 79 % of its box, but nearly all of the plate is close to it."""
+    top = next(p for p in table.parts if p.name == "top")
+    plain, own = made(table, scaffold, {"top": disc(top)}, "plain"), made(table, scaffold, {"top": disc(top)})
+    assert 0.7 < body(own, "top").volume / body(plain, "top").volume < 0.95
+    assert [f.code for f in own.findings if "top" in f.text] == ["outline"]
+
+
+def test_a_panel_whose_part_begins_late_still_hangs_on_its_hinge(
+    table: Recipe, scaffold: Callable[..., Scaffold]
+) -> None:
+    wall = next(p for p in table.parts if p.name == "left")
+    short = replace(wall, size=wall.size - [0.0, 0.0, 20.0])
+    own = made(table, scaffold, {"left": bowed(short, 1.0, 3.0)})
+    assert [f.code for f in own.findings if f.code in ("plain", "outline")] == []
+
+
 def test_what_is_too_thin_keeps_its_outline_and_what_is_open_too(
     table: Recipe, scaffold: Callable[..., Scaffold]
 ) -> None:

@@ -131,13 +131,19 @@ class Printer:
     """mm, x × y × z."""
 
 
+USUAL_THICKNESS = 4.0
+"""K where nobody says another, mm."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PrintOptions:
     """How the model is to be printed."""
 
     printer: Printer
-    thickness: float = 4.0
+    thickness: float = USUAL_THICKNESS
     """K, the thickness of plates and panels, mm in print."""
+    may_thin: bool = field(default=False, compare=False)
+    """Whether K may be less than that, where the furniture folds whole only then."""
     base_thickness: float | None = None
     """The thickness of base plates, mm in print; None where it is K."""
     own_thickness: bool = False
@@ -170,7 +176,7 @@ class Recipe:
 
     name: str
     direction: Array | None
-    """(3,) unit folding direction d; None tries all six axis directions."""
+    """(3,) unit folding direction d; None takes the best of those that are tried."""
     parts: tuple[Part, ...]
     fold: FoldOptions
     print: PrintOptions
@@ -180,6 +186,8 @@ class Recipe:
     """Where it came from, for messages."""
     notes: tuple[str, ...] = ()
     """What reading had to suppose or leave out, a sentence each."""
+    why: str = ""
+    """Why it folds along its direction, where that was chosen for the maker."""
 
     def __post_init__(self) -> None:
         if self.direction is not None:

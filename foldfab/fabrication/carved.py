@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from foldfab.fabrication import solids
 from foldfab.fabrication.free import Motion, used_room
 from foldfab.fabrication.outlines import KEPT, share_left
-from foldfab.fabrication.places import FAR, Place, zone
+from foldfab.fabrication.places import FAR, FINE, Place, zone
 from foldfab.fabrication.printed import printed
 from foldfab.fabrication.shapes import Shape, common, union
 from foldfab.fabrication.solids import Outline, Solid
@@ -22,7 +22,7 @@ TIP = 0.8
 """Half the width below which a tip or a wall is left out, mm."""
 SMALL = 10.0
 """Room smaller than this is not worth a bump, mm²."""
-MUCH = 0.3
+MUCH = 0.6
 """Nor is room that less than this share of the solid has at that height."""
 RISES = 0.75
 """How far a wide part may rise beyond its plate, in thicknesses of panels: for looks, not for bulk."""
@@ -33,10 +33,10 @@ SUNK = 0.3
 INSET, BEYOND = 0.02, 1.0
 """How far rooms keep from faces of plates and from one another, where faces that coincide would leave slivers; and how
 far they reach beyond a plate, mm."""
-HAIR = 0.06
-"""Half the width of what is not worth a cut, mm."""
-FINE = 0.05
-"""How far an outline may be from the solid's own, mm."""
+ODD = (0.0137, 0.0071)
+"""Off which corners cuts are set, mm."""
+HAIR = 0.12
+"""What is less beside something good is not worth a cut, mm."""
 
 
 Room = tuple[Outline, float, float]
@@ -71,12 +71,18 @@ def _filled(
     """The plain plate where it is kept, and the own solid in the rooms where it is thick enough."""
     share = share_left(kept + thick, seen, place)
     inset = [(solids.grown(room, -INSET * i), low, high) for i, (room, low, high) in enumerate(rooms)]
-    trim = _without(solids.grown(seen, -INSET), solids.silhouette(made) - thick)
+    trim = _without(solids.grown(seen, -INSET), solids.silhouette(made), thick)
+    inset, trim = [(_aside(room), low, high) for room, low, high in inset], _aside(trim)
     columns, ends = ([p for room in some for p in place.plane.columns(*room)] for some in (inset, [(trim, -FAR, FAR)]))
     if share < KEPT or not columns or not ends:
         return f"would leave {share:.0%} of it, because it is thin or leaves the layer that it folds in"
     core = [common(plain, union(place.plane.columns(kept, -FAR, FAR)))] if not kept.is_empty() else []
     return union([*core, common(common(own, union(ends)), union(columns))])
+
+
+def _aside(outline: Outline) -> Outline:
+    """The outline a trifle off: drawn from the corners of a solid, it would else cut just through them."""
+    return outline.translate(ODD)
 
 
 def _raised(outline: Outline) -> Solid:
@@ -94,7 +100,7 @@ def _beyond(
     found = []
     for used, height in used_room(place, laid, is_above, most, motions, gap):
         free = around - used - zone(place.bare[int(is_above)])
-        room = _without(free, (free ^ whole) - _smooth(free ^ whole))
+        room = _without(free, free ^ whole, _smooth(free ^ whole))
         if (room ^ whole).area() >= MUCH * whole.area():
             low, high = sorted((face - sunk if is_above else face + sunk, height))
             found.append((room, low, high))
@@ -112,10 +118,9 @@ def _thick_enough(made: Solid, kept: Outline, least: float) -> Outline:
     return thick ^ max(pieces, key=lambda piece: piece.area()) if pieces else thick
 
 
-def _without(room: Outline, gone: Outline) -> Outline:
-    """A room without what is gone from it, a little more than that, but for hair lines."""
-    wide = solids.grown(solids.grown(gone, -HAIR), HAIR) ^ gone
-    return room - solids.grown(wide, HAIR / 2)
+def _without(room: Outline, whole: Outline, good: Outline) -> Outline:
+    """A room without what of the whole is not good; what lies within a hair of it is."""
+    return room - solids.grown(whole - solids.grown(good, HAIR), HAIR / 2)
 
 
 def _smooth(outline: Outline) -> Outline:

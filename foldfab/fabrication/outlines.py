@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from foldfab.fabrication import solids
-from foldfab.fabrication.places import FAR, Place, zone
+from foldfab.fabrication.places import FAR, FINE, Place, zone
 from foldfab.fabrication.printed import printed
 from foldfab.fabrication.shapes import Shape, cut
 from foldfab.fabrication.solids import Outline
@@ -20,8 +20,6 @@ HALF = 0.4
 """And it has to be this share itself."""
 SMALL = 2.0
 """Bits of less than this are not cut away, mm²."""
-FINE = 0.05
-"""How far an outline may be from the part's own, mm."""
 TIP = 0.8
 """Half the width at which a tip ends, mm."""
 
@@ -32,7 +30,9 @@ def outlined(place: Place, plain: Shape, meshes: list[tuple[Array, Indices]]) ->
     `meshes` are those of its parts, vertices (n, 3) and faces (m, 3), canonical frame, mm; they need not be closed.
     """
     seen = solids.silhouette(place.plane.laid(printed(plain)))
-    stays = _outline([place.plane.local(points)[:, :2][faces] for points, faces in meshes]) + zone(place.kept)
+    stays = zone(place.kept)
+    for points, faces in meshes:
+        stays = stays + place.plane.silhouette(points, faces)
     # Tips that run out thinner than a few lines are left out with what is cut away.
     left = solids.grown(solids.grown(seen ^ stays, -TIP), TIP)
     share = share_left(left, seen, place)
@@ -61,12 +61,3 @@ def _around(seen: Outline, left: Outline) -> list[Outline]:
     quarters = [middle + size * (np.array([x, y]) - 0.5) for x in (0, 1) for y in (0, 1)]
     sides = size + FINE
     return [bit for quarter in quarters for bit in solids.islands(rest ^ solids.rectangle(quarter, sides))]
-
-
-def _outline(many: list[Array]) -> Outline:
-    """What triangles (n, 3, 2) cover, whatever their sense."""
-    corners = np.concatenate(many)
-    one, two = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    area = one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0]
-    turned = np.where((area < 0)[:, None, None], corners[:, ::-1], corners)[np.abs(area) > 1e-9]
-    return solids.covered(turned).simplify(FINE)

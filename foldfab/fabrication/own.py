@@ -7,6 +7,7 @@ leaves every stop, and fits the bed. A finding tells of every part that does not
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Literal
@@ -19,15 +20,17 @@ from foldfab.fabrication.free import Motion
 from foldfab.fabrication.furniture import is_own, own_solid, placed_mesh
 from foldfab.fabrication.model import Assembly, Finding
 from foldfab.fabrication.outlines import outlined
-from foldfab.fabrication.places import Place, places, reaching
+from foldfab.fabrication.places import Place, places, reaching, zone
 from foldfab.fabrication.shapes import Shape, union
 from foldfab.fabrication.solids import Outline, Solid
 from foldfab.fabrication.stopping import Stopped, reached
 from foldfab.fabrication.trial import Change, Trial, changed
-from foldfab.geometry.arrays import Array
+from foldfab.geometry.arrays import Array, Indices
 from foldfab.recipe.model import Part
 from foldfab.scaffold.model import Scaffold
 
+SEAM, BRIDGE = 1.5, 4.0
+"""How far from where parts touch the plate stays that holds them together; and from either side of a gap, mm."""
 WORTH_SAYING = 0.5
 """A stack that is this much higher for it is spoken of, mm."""
 
@@ -82,7 +85,7 @@ def _candidates(trial: Trial, place: Place, plain: Shape) -> Iterator[tuple[Lite
     else:
         gap, panel = trial.assembly.solution.thickness.gap, trial.assembly.solution.thickness.panel
         motions = [_motion(trial, place, name) for name in sorted(trial.made) if name != place.name]
-        for shape in carved(place, plain, union(own), _boxes(scaffold, place, parts), motions, gap, panel):
+        for shape in carved(place, plain, union(own), _stays(scaffold, place, parts, meshes), motions, gap, panel):
             yield "solid", shape
     yield "outline", outlined(place, plain, meshes)
 
@@ -94,13 +97,24 @@ def _motion(trial: Trial, place: Place, name: str) -> Motion:
     return Motion(trial.made[name], poses)
 
 
-def _boxes(scaffold: Scaffold, place: Place, parts: list[Part]) -> Outline:
-    """What parts without a shape of their own cover: boxes stay plates."""
+def _stays(scaffold: Scaffold, place: Place, parts: list[Part], meshes: list[tuple[Array, Indices]]) -> Outline:
+    """Where the plain plate stays: boxes are plates, and what only touches or is near is held together by one."""
+    seen = [place.plane.silhouette(points, faces) for points, faces in meshes]
     found = solids.nothing()
-    for part in parts:
-        if not is_own(scaffold, part):
-            corners, _ = placed_mesh(scaffold, part, place.normal)
-            found = found + solids.silhouette(solids.hull_of(place.plane.local(corners)))
+    for part, outline in zip(parts, seen, strict=True):
+        found = found if is_own(scaffold, part) else found + outline
+    found = found + _between(seen, SEAM)
+    whole = found + zone(place.kept)
+    for outline in seen:
+        whole = whole + outline
+    return found + _between(solids.islands(whole), BRIDGE)
+
+
+def _between(outlines: list[Outline], within: float) -> Outline:
+    """What is near to two of several outlines."""
+    found = solids.nothing()
+    for one, other in itertools.combinations([solids.grown(outline, within) for outline in outlines], 2):
+        found = found + (one ^ other)
     return found
 
 

@@ -14,13 +14,17 @@ from foldfab.fabrication.solids import Outline, Solid
 from foldfab.folding.anatomy import faces
 from foldfab.folding.mechanism import frames
 from foldfab.folding.model import Chain, FoldSolution
-from foldfab.geometry.arrays import Array
+from foldfab.geometry.arrays import Array, Indices
 from foldfab.recipe.hinges import STYLES
 
 WEB = 2.0
 """Of the plain plate stays this much beyond what a hinge takes, mm."""
 FAR = 500.0
 """Beyond every plate, mm."""
+FLAT = 1e-9
+"""A triangle that covers less is seen from its edge, mm²."""
+FINE = 0.05
+"""How far an outline may be from the part's own, mm."""
 ROUNDING = 0.01
 """Holes reach this much beyond what they are cut from, mm."""
 
@@ -41,6 +45,14 @@ class Plane:
     def laid(self, body: Solid) -> Solid:
         """The body with its u, v and w along x, y and z."""
         return solids.placed(body, -self.across @ self.origin, self.across.T)
+
+    def silhouette(self, points: Array, faces: Indices) -> Outline:
+        """What a mesh, (n, 3) and (m, 3), covers in u and v, whatever the sense of its faces."""
+        corners = self.local(points)[:, :2][faces]
+        one, two = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        area = one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0]
+        turned = np.where((area < 0)[:, None, None], corners[:, ::-1], corners)[np.abs(area) > FLAT]
+        return solids.covered(turned).simplify(FINE)
 
     def columns(self, outline: Outline, low: float, high: float) -> list[Shape]:
         """What stands over an outline in u and v, from `low` to `high` in w."""

@@ -168,7 +168,8 @@ class Trial:
         rigid = solids.cut(solid, self.gives.get(name, []))
         for other in self.made:
             rest = solids.cut(self.made[other], self.gives.get(other, []))
-            if other != name and not self._is_apart(name, rigid, other, rest):
+            # The room that it fills was looked for between the instants as well.
+            if other != name and not self._is_apart(name, rigid, other, rest, in_between=False):
                 return f"meets {other}"
         return self._unstopped(name, solid)
 
@@ -249,14 +250,14 @@ class Trial:
         points = (solids.mesh(solid)[0] @ pose[:3, :3].T + pose[:3, 3]) @ self._turn.T
         return points.min(0), points.max(0)
 
-    def _is_apart(self, body: str, added: Solid, name: str, other: Solid) -> bool:
+    def _is_apart(self, body: str, added: Solid, name: str, other: Solid, *, in_between: bool = True) -> bool:
         """Whether a piece of a body stays apart from another body all along the fold."""
         clearance = self.assembly.solution.thickness.gap
         key = 0 if self._is_open else -1
         piece = solids.moved(added, seen_from(self.poses[name][key], self.poses[body][key]))
         if solids.gap(piece, other, clearance) < GAP_SHARE * clearance:
             return False
-        return not self._passage.meets(body, added, name, other, above=CLASH / 2)
+        return not self._passage.meets(body, added, name, other, above=CLASH / 2, in_between=in_between)
 
 
 def _around(pieces: list[Solid]) -> tuple[Array, Array]:

@@ -154,6 +154,18 @@ def test_a_panel_whose_part_begins_late_still_hangs_on_its_hinge(
     assert [f.code for f in own.findings if f.code in ("plain", "outline")] == []
 
 
+def test_parts_of_one_base_that_only_touch_are_one_body(
+    recipe: Callable[..., Recipe], scaffold: Callable[..., Scaffold], board_at: Callable[..., Part]
+) -> None:
+    parts = (*recipe("table").parts, board_at("leaf", 72, 60, 80, 130.5))
+    table = recipe(parts)
+    shapes = {p.name: bowed(p, 0.5, 3.0) for p in parts if p.name in ("top", "leaf")}
+    own, plain = made(table, scaffold, shapes), made(table, scaffold, shapes, "plain")
+    (base,) = (b.name for b in own.bodies if b.kind == "base")
+    assert body(own, base).volume < 0.9 * body(plain, base).volume
+    assert [f.code for f in own.findings if f.code in ("plain", "outline")] == []
+
+
 def test_what_is_too_thin_keeps_its_outline_and_what_is_open_too(
     table: Recipe, scaffold: Callable[..., Scaffold]
 ) -> None:

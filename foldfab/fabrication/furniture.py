@@ -11,6 +11,7 @@ import numpy as np
 from foldfab.fabrication import solids
 from foldfab.fabrication.shapes import Shape, facets
 from foldfab.geometry.arrays import Array, Indices
+from foldfab.geometry.closed import is_closed
 from foldfab.geometry.rotation import cross
 from foldfab.recipe.model import Part
 from foldfab.scaffold.model import Scaffold
@@ -52,23 +53,13 @@ def own_solid(scaffold: Scaffold, part: Part, normal: Array) -> Shape | None:
     _, first, index = np.unique(grid, axis=0, return_index=True, return_inverse=True)
     places, welded = vertices[first], index.reshape(-1)[faces]
     welded = welded[(welded != np.roll(welded, 1, axis=1)).all(axis=1)]
-    if not _is_closed(welded):
+    if not is_closed(welded):
         return None
     corners = places[welded]
     volume = float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])))
     # Closed but inside out: the file's sense of round, and not a fault of the surface.
     solid = solids.from_mesh(places, welded if volume > 0 else welded[:, ::-1])
     return facets(*solids.mesh(solid.simplify(FINE)))
-
-
-def _is_closed(faces: Indices) -> bool:
-    """Whether each directed edge of (m, 3) faces is there once, and once the other way."""
-    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    if len(edges) == 0:
-        return False
-    base = int(faces.max()) + 1
-    there, back = edges @ [base, 1], edges @ [1, base]
-    return len(np.unique(there)) == len(there) and np.array_equal(np.sort(there), np.sort(back))
 
 
 def _levelling(axes: Array, normal: Array) -> Array:

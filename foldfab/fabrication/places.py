@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from foldfab.fabrication import solids
-from foldfab.fabrication.plates import RIM, axis_of
+from foldfab.fabrication.plates import axis_of
 from foldfab.fabrication.shapes import Shape, cut, placed, prism
 from foldfab.fabrication.solids import Outline, Solid
-from foldfab.folding.anatomy import faces
+from foldfab.folding.anatomy import RIM, faces
 from foldfab.folding.mechanism import frames
 from foldfab.folding.model import Chain, FoldSolution
 from foldfab.geometry.arrays import Array, Indices

@@ -28,6 +28,7 @@ from foldfab.recipe.hinges import HingeKind, hinge_problem
 from foldfab.recipe.model import (
     Collisions,
     FoldOptions,
+    Look,
     Material,
     Mechanism,
     Ordering,
@@ -271,6 +272,7 @@ class PartForm(Form):
         default=[], max_length=MOST_PATTERNS, description="What its modification must not be like."
     )
     thickness: Plate | None = Field(default=None, description="Thickness of its plate or panels, mm in print.")
+    shape: Look | None = Field(default=None, description="A plain plate, or as it looks; as the print says if missing.")
 
     @model_validator(mode="after")
     def _is_one_thing(self, info: ValidationInfo) -> PartForm:
@@ -363,8 +365,9 @@ class PrintForm(Form):
     hinge: Annotated[HingeKind, AfterValidator(_makeable)] = Field(
         default=_PRINT.hinge, description="How hinges are pinned together."
     )
-    shape: Literal["plain", "own"] = Field(
-        default=_PRINT.shape, description="Plain plates, or cut to the outlines of parts that came with a shape."
+    shape: Look = Field(
+        default=_PRINT.shape,
+        description="Plain plates, or the solids of parts that came with a shape, where they fold.",
     )
     latch: bool = Field(default=_PRINT.latch, description="Whether a detent holds the furniture open.")
     scale: Scale = Field(default="fit", description="Print size over true size; fit is the largest on the printer.")

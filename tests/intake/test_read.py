@@ -104,7 +104,7 @@ def recipe(folder: Path, wishes: Wishes = NO_WISHES, **content: Any) -> Recipe:
 def test_a_model_with_flags(folder: Path) -> None:
     flags = [
         {"name": "Side *", "hingeable": False},
-        {"name": "side left", "thickness": 3, "pin": {"mechanism": "slanted"}},
+        {"name": "side left", "thickness": 3, "shape": "own", "pin": {"mechanism": "slanted"}},
         {"name": "Top", "ignore": True},
         {"name": "b*", "merge": "floor"},
         {"name": "lid", "box": {"center": [0, 0, 90], "size": [50, 30, 2]}},
@@ -115,6 +115,7 @@ def test_a_model_with_flags(folder: Path) -> None:
     assert [part.hingeable for part in found.parts] == [False, False, True, True, True]
     assert (parts["Side left"].thickness, parts["Side right"].thickness) == (3.0, None)
     assert parts["Side left"].pin is not None
+    assert [part.look for part in found.parts] == ["own", None, None, None, None]
     assert parts["lid"].size.tolist() == [500, 300, 20]
     assert parts["floor"].size.tolist() == [500, 300, 18]
     assert found.notes == ("ignored as asked: Top",)

@@ -263,6 +263,9 @@ class PartForm(Form):
     merge: Annotated[str, AfterValidator(_merged_name)] | None = Field(
         default=None, description="The name of the one part that these bodies of the model become."
     )
+    by_contact: bool = Field(
+        default=False, description="Whether only those of them become one part that touch; each heap is a part."
+    )
     hingeable: bool = Field(default=True, description="False where no hinge may be inserted in its interior.")
     pin: Annotated[PatternForm, AfterValidator(_pinnable)] | None = Field(
         default=None, description="What its modification has to be like."
@@ -286,6 +289,8 @@ class PartForm(Form):
             return '"ignore" and "merge" are for bodies of a "model"; leave them out'
         if self.ignore and self.merge is not None:
             return "is ignored and merged; keep one"
+        if self.by_contact and self.merge is None:
+            return '"by_contact" says how bodies merge; give "merge", or leave it out'
         return part_name_problem(self.name) if has_shape else None
 
 

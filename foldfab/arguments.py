@@ -72,7 +72,8 @@ def parser(run: Mapping[str, Run], version: type[argparse.Action]) -> argparse.A
         (trying, looking), (comparing, looking), (making, f"{looking} and no summary"), (folding, looking),
     )  # fmt: skip
     for command, quiet in (*told, (understanding, "no notes")):
-        what = "a recipe (.json) or its name, a STEP, GLB, glTF, OBJ, 3MF or STL file, or a folder of STL files"
+        kinds = "STEP, GLB, glTF, OBJ, 3MF, STL, URDF, MJCF"
+        what = f"a recipe (.json) or its name, a file of shapes ({kinds}), or a folder of STL files"
         command.add_argument("recipe", metavar="FILE", help=what)
         command.add_argument("-q", "--quiet", action="store_true", help=quiet)
         _add_options(command)

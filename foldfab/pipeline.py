@@ -37,8 +37,8 @@ def load(
     """The furniture in a recipe, in a file of shapes, or in a build123d object, with options put over it.
 
     Args:
-        source: a recipe's file or one that foldfab ships; a STEP, GLB, glTF, OBJ, 3MF or STL file; a folder of
-            STL files; or a build123d object.
+        source: a recipe's file or one that foldfab ships; a STEP, GLB, glTF, OBJ, 3MF, STL, URDF or MJCF file; a
+            folder of STL files; or a build123d object.
         units: of a file of shapes, "mm", "cm", "m" or "in"; what it states, or a guess that is noted, where missing.
         up: the axis of a file of shapes that points up, "x", "y" or "z"; that of its format where missing.
         split_shells: whether shells of one body that do not touch are parts of their own.

@@ -24,6 +24,8 @@ LARGEST_UNPACKED = 800_000_000
 MOST_EXPANDED = 100
 """Bytes unpacked for one packed; meshes as XML reach about 15."""
 DEEPEST_XML = 32
+LARGEST_DESCRIPTION = 20_000_000
+"""Bytes of a URDF or MJCF file, whose shapes lie in files of their own."""
 FARTHEST = 1e9
 """Units; furniture has no larger coordinates in any of them."""
 LONGEST_SECONDS = 120.0

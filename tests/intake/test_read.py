@@ -19,7 +19,7 @@ from foldfab.recipe.model import Part, Recipe
 from foldfab.recipe.read import parse
 from foldfab.recipe.write import as_text
 
-from .furniture import SHELF, box, cylinder, glb, gltf, meshes, model_xml, obj, stl, threemf
+from .furniture import SHELF, box, cylinder, glb, gltf, meshes, mjcf, model_xml, obj, stl, threemf
 
 NO_WISHES = Wishes()
 
@@ -31,6 +31,7 @@ def folder(tmp_path: Path) -> Path:
     (tmp_path / "shelf.glb").write_bytes(glb(*gltf(meshes(), embed=False)))
     (tmp_path / "shelf.gltf").write_text(json.dumps(gltf(meshes())[0]), encoding="utf-8")
     threemf(tmp_path / "shelf.3mf", model_xml(meshes()))
+    (tmp_path / "shelf.xml").write_text(mjcf(), encoding="utf-8")
     (tmp_path / "shelf").mkdir()
     for name, mesh in meshes().items():
         (tmp_path / "shelf" / f"{name}.stl").write_bytes(stl(mesh))
@@ -46,7 +47,7 @@ def assert_is_the_shelf(recipe: Recipe) -> None:
         assert np.array_equal(found[name].axes, np.eye(3))
 
 
-@pytest.mark.parametrize("name", ["shelf.obj", "shelf.glb", "shelf.gltf", "shelf.3mf", "shelf"])
+@pytest.mark.parametrize("name", ["shelf.obj", "shelf.glb", "shelf.gltf", "shelf.3mf", "shelf.xml", "shelf"])
 def test_every_format_gives_the_same_recipe(folder: Path, name: str) -> None:
     recipe = load(folder / name, NO_WISHES)
     assert (recipe.name, recipe.direction) == ("shelf", None)

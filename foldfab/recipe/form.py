@@ -172,10 +172,8 @@ Direction = Annotated[
     Annotated[AxisName, Tag("<axis>")] | Annotated[Vector, AfterValidator(_not_zero), Tag("<vector>")],
     Discriminator(lambda value: "<vector>" if isinstance(value, list) else "<axis>"),
 ]
-Pairs = Annotated[
-    list[Annotated[list[Annotated[str, AfterValidator(_pattern_of_names)]], Field(min_length=2, max_length=2)]],
-    Field(max_length=MOST_PAIRS),
-]
+NamePattern = Annotated[str, AfterValidator(_pattern_of_names)]
+Pairs = Annotated[list[Annotated[list[NamePattern], Field(min_length=2, max_length=2)]], Field(max_length=MOST_PAIRS)]
 Scale = Annotated[
     Annotated[Literal["fit"], Tag("<fit>")] | Annotated[float, Field(ge=1e-5, le=1e3), Tag("<number>")],
     Discriminator(lambda value: "<fit>" if isinstance(value, str) else "<number>"),

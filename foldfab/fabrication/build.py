@@ -11,7 +11,7 @@ import numpy as np
 from foldfab.errors import FabricationError
 from foldfab.fabrication import solids
 from foldfab.fabrication.inspect import inspect
-from foldfab.fabrication.model import Assembly, Body, Finding, Joint
+from foldfab.fabrication.model import AS_READ, Assembly, Body, Finding, Joint
 from foldfab.fabrication.own import own_shapes
 from foldfab.fabrication.panels import panels
 from foldfab.fabrication.plates import axis_of, plate
@@ -94,8 +94,10 @@ def _require_sound(findings: list[Finding]) -> None:
 
 
 def _notes(solution: FoldSolution) -> list[Finding]:
-    why = solution.scaffold.recipe.print.why
-    return [*([Finding("posture", why)] if why else []), *(Finding("note", note) for note in solution.notes)]
+    recipe = solution.scaffold.recipe
+    posture = [Finding("posture", recipe.print.why)] if recipe.print.why else []
+    read = [Finding(AS_READ, note) for note in recipe.notes]
+    return [*posture, *read, *(Finding("note", note) for note in solution.notes)]
 
 
 def _bodies(solution: FoldSolution, made: dict[str, Solid]) -> tuple[Body, ...]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from foldfab.folding import anatomy
 from foldfab.folding.basic import Option
 from foldfab.folding.model import Chain
 from foldfab.folding.problem import Problem
-from foldfab.folding.site import slab
+from foldfab.folding.site import plate_boxes, slab
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Array, Indices
 from foldfab.geometry.boxes import Boxes, bounds
@@ -70,6 +70,8 @@ class Scene:
     """(n,) the base that each solid moves with, -1 where a place is empty."""
     shapes: dict[object, tuple[Solid, ...]] = field(default_factory=dict)
     """Solids that were made already."""
+    looks: dict[object, Any] = field(default_factory=dict, init=False)
+    """What units see of this very scene."""
 
     def moved(self, base: str) -> Array:
         """(3,) how far a base has come, mm."""
@@ -80,8 +82,9 @@ class Scene:
 def open_scene(problem: Problem) -> Scene:
     """The furniture before the first step."""
     number = problem.tree.number
+    sites = [problem.sites[patch] for unit in problem.units for patch in unit.patches]
     solids = [
-        _solid(base.name, "base", number[base.name], anatomy.base_boxes(base, problem.thickness))
+        _solid(base.name, "base", number[base.name], plate_boxes(base, sites, problem.thickness))
         for base in problem.scaffold.bases
     ]
     places = {}

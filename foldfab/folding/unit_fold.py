@@ -14,7 +14,7 @@ import numpy as np
 from foldfab.folding import basic
 from foldfab.folding.basic import Option, Variant
 from foldfab.folding.congruent import repertoire
-from foldfab.folding.graph import Graph
+from foldfab.folding.graph import Graph, Lesson
 from foldfab.folding.model import Chain
 from foldfab.folding.press import Motion
 from foldfab.folding.problem import Problem
@@ -48,6 +48,12 @@ class UnitFold:
     """Sum of its terms of eq. 1."""
     weight: float
     """What the search minimises: the cost, with deletions counted many times."""
+    seen: object
+    """All that it depends on (`Surroundings.key`)."""
+    gap: float = 0.0
+    """By how much it may weigh more than the cheapest in these surroundings, where the work did not suffice to tell."""
+    learned: tuple[Lesson, ...] = ()
+    """What did not work in these surroundings."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,6 +72,8 @@ class Refusal:
 
     unit: Unit
     reason: str
+    learned: tuple[Lesson, ...] = ()
+    """What did not work in these surroundings."""
 
 
 def fold_unit(problem: Problem, scene: Scene, unit: Unit, *, in_place: bool = False) -> UnitFold | Refusal:
@@ -109,7 +117,8 @@ def _estimate(problem: Problem, scene: Scene, own: Repertoire, around: Surroundi
         return np.inf
     found = prospects(problem, own, around, in_place=False)
     graph = Graph(problem, own, found, around.offset, chosen=scene.chosen)
-    _, graph, picked = _picked(problem, scene, own, around, found, graph, in_place=False)
+    found, graph, picked = _picked(problem, scene, own, around, found, graph, in_place=False)
+    problem.begun[around.key, around.offset.tobytes()] = found, graph
     return graph.weight(picked) if picked is not None else np.inf
 
 
@@ -161,8 +170,7 @@ def _fold(
     if around.standing:
         return Refusal(unit, f"{', '.join(sorted(around.standing)[:3])} in the way still stands unfolded")
     why: list[str] = []
-    found = prospects(problem, own, around, in_place=in_place)
-    graph = Graph(problem, own, found, around.offset, chosen=scene.chosen)
+    found, graph = _begun(problem, scene, own, around, in_place=in_place)
     for _ in range(ROUNDS):
         found, graph, picked = _picked(problem, scene, own, around, found, graph, in_place=in_place)
         if picked is None:
@@ -172,10 +180,24 @@ def _fold(
         if not isinstance(result, Clash):
             reasons = reasons_of(problem, own, found, chosen)
             cost = sum(o.cost for o in chosen.values())
-            return UnitFold(unit, chosen, reasons, *result, around.cluster, cost, graph.weight(picked))
+            return UnitFold(
+                unit, chosen, reasons, *result, around.cluster, cost, graph.weight(picked), around.key,
+                gap=float(sum(graph.gaps)), learned=tuple(graph.learned),
+            )  # fmt: skip
         why += [result.reason] if result.reason not in why else []
         graph.learn(picked, result)
-    return Refusal(unit, reason_against(problem, own, found, why))
+    return Refusal(unit, reason_against(problem, own, found, why), tuple(graph.learned))
+
+
+def _begun(
+    problem: Problem, scene: Scene, own: Repertoire, around: Surroundings, *, in_place: bool
+) -> tuple[Prospects, Graph]:
+    """What the unit can do and its conflict graph, made already where it was estimated in such surroundings."""
+    known: tuple[Prospects, Graph] | None = problem.begun.pop((around.key, around.offset.tobytes()), None)
+    if known is not None and not in_place:
+        return known
+    found = prospects(problem, own, around, in_place=in_place)
+    return found, Graph(problem, own, found, around.offset, chosen=scene.chosen)
 
 
 def _picked(

@@ -32,6 +32,8 @@ LONGEST_SECONDS = 120.0
 """For the reader of STEP files."""
 LARGEST_MEMORY = 4 << 30
 """Bytes of address space for the reader of STEP files, whose libraries take up one of it."""
+LARGEST_DATA = 850_000_000
+"""Bytes that it may fill; with what its libraries share it stays within 1 GB, as the other readers do at the limits."""
 
 
 def fail(path: Path | str, text: str, place: str = TOP) -> NoReturn:

@@ -46,6 +46,8 @@ THINNEST, THICKEST = 2.0, 20.0
 """Limits of the thickness of a plate, mm in print."""
 MOST_PATTERNS = 100
 """Forbidden for one part."""
+MOST_PAIRS = 20_000
+"""Of parts of which is said whether they touch."""
 FARTHEST = 1e6
 """mm; larger sizes and coordinates are a wrong unit."""
 SMALLEST_SIZE = 0.01
@@ -76,7 +78,11 @@ def _folder(name: str) -> str:
 def _part_name(name: str, info: ValidationInfo) -> str:
     """Beside a model it may be a pattern for several names."""
     globs = (info.context or {}).get("globs", False)
-    _complain(part_name_problem(name.replace("*", "x").replace("?", "x") if globs else name))
+    return _pattern_of_names(name) if globs else _merged_name(name)
+
+
+def _pattern_of_names(name: str) -> str:
+    _complain(part_name_problem(name.replace("*", "x").replace("?", "x")))
     return name
 
 
@@ -140,7 +146,8 @@ def _allowed_hinges(hinges: int, info: ValidationInfo) -> int:
 
 
 def _makeable(hinge: HingeKind, info: ValidationInfo) -> HingeKind:
-    _complain(hinge_problem(hinge, info.data.get("thickness"), info.data.get("posture")))
+    thickness = info.data.get("thickness")
+    _complain(hinge_problem(hinge, _PRINT.thickness if thickness == "auto" else thickness, info.data.get("posture")))
     return hinge
 
 
@@ -165,9 +172,17 @@ Direction = Annotated[
     Annotated[AxisName, Tag("<axis>")] | Annotated[Vector, AfterValidator(_not_zero), Tag("<vector>")],
     Discriminator(lambda value: "<vector>" if isinstance(value, list) else "<axis>"),
 ]
+Pairs = Annotated[
+    list[Annotated[list[Annotated[str, AfterValidator(_pattern_of_names)]], Field(min_length=2, max_length=2)]],
+    Field(max_length=MOST_PAIRS),
+]
 Scale = Annotated[
     Annotated[Literal["fit"], Tag("<fit>")] | Annotated[float, Field(ge=1e-5, le=1e3), Tag("<number>")],
     Discriminator(lambda value: "<fit>" if isinstance(value, str) else "<number>"),
+]
+Thickness = Annotated[
+    Annotated[Literal["auto"], Tag("<auto>")] | Annotated[Plate, Tag("<number>")],
+    Discriminator(lambda value: "<auto>" if isinstance(value, str) else "<number>"),
 ]
 Clearance = Annotated[
     Annotated[Literal["auto"], Tag("<auto>")] | Annotated[float, Field(ge=LEAST, le=MOST), Tag("<number>")],
@@ -324,7 +339,10 @@ class PrintForm(Form):
     """How the model is to be printed; always in millimetres of the print."""
 
     printer: PrinterChoice = Field(default=DEFAULT_PRINTER.name, description="A known printer or one's own.")
-    thickness: Plate = Field(default=_PRINT.thickness, description="Thickness of plates and panels, mm.")
+    thickness: Thickness = Field(
+        default="auto",
+        description="Thickness of plates and panels, mm; auto is 4, or less where it folds whole only so.",
+    )
     base_thickness: Plate | None = Field(
         default=None, description="Thickness of base plates, mm; that of panels where missing."
     )
@@ -370,5 +388,9 @@ class RecipeForm(Form):
         default=None, description="A file of shapes in the recipe's folder; its bodies are parts."
     )
     parts: list[PartForm] = Field(default=[], max_length=MOST_PARTS)
+    touching: Pairs = Field(
+        default=[], description="Pairs of parts that touch although their boxes are apart; leg* fits all that begin so."
+    )
+    apart: Pairs = Field(default=[], description="Pairs of parts that do not touch although their boxes do.")
     fold: FoldForm = Field(default_factory=FoldForm)
     print: PrintForm = Field(default_factory=PrintForm)

@@ -17,6 +17,8 @@ Mechanism = Literal["in-place", "slanted", "deleted"]
 Side = Literal["l", "r"]
 Material = Literal["pla", "petg", "abs", "nylon"]
 Source = Literal["recipe", "command line", "profile", "calibration"]
+Pair = tuple[str, str]
+"""The names of two parts, sorted."""
 
 _SAME_EDGE = 1e-9
 """Shares of the width that are closer than this are the same cutting point."""
@@ -128,13 +130,19 @@ class Printer:
     """mm, x × y × z."""
 
 
+USUAL_THICKNESS = 4.0
+"""K where nobody says another, mm."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PrintOptions:
     """How the model is to be printed."""
 
     printer: Printer
-    thickness: float = 4.0
+    thickness: float = USUAL_THICKNESS
     """K, the thickness of plates and panels, mm in print."""
+    may_thin: bool = field(default=False, compare=False)
+    """Whether K may be less than that, where the furniture folds whole only then."""
     base_thickness: float | None = None
     """The thickness of base plates, mm in print; None where it is K."""
     own_thickness: bool = False
@@ -177,6 +185,10 @@ class Recipe:
     """Where it came from, for messages."""
     notes: tuple[str, ...] = ()
     """What reading had to suppose or leave out, a sentence each."""
+    touching: tuple[Pair, ...] = ()
+    """Parts that touch although their boxes are apart, sorted."""
+    apart: tuple[Pair, ...] = ()
+    """Parts that do not touch although their boxes do, sorted."""
     why: str = ""
     """Why it folds along its direction, where that was chosen for the maker."""
 

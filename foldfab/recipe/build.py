@@ -115,8 +115,10 @@ def flagged(part: Part, form: PartForm, steps: int) -> Part:
         "pin": None if form.pin is None else _pattern(form.pin, steps),
         "forbid": tuple(_pattern(pattern, steps) for pattern in form.forbid),
         "thickness": None if form.thickness is None else float(form.thickness),
+        "look": form.shape,
     }
-    return replace(part, **{key: value for key, value in flags.items() if key in form.model_fields_set})
+    said = form.model_fields_set | ({"look"} if "shape" in form.model_fields_set else set())
+    return replace(part, **{key: value for key, value in flags.items() if key in said})
 
 
 def _pattern(form: PatternForm, steps: int) -> Pattern:

@@ -28,6 +28,7 @@ from foldfab.recipe.hinges import HingeKind, hinge_problem
 from foldfab.recipe.model import (
     Collisions,
     FoldOptions,
+    Look,
     Material,
     Mechanism,
     Ordering,
@@ -172,10 +173,8 @@ Direction = Annotated[
     Annotated[AxisName, Tag("<axis>")] | Annotated[Vector, AfterValidator(_not_zero), Tag("<vector>")],
     Discriminator(lambda value: "<vector>" if isinstance(value, list) else "<axis>"),
 ]
-Pairs = Annotated[
-    list[Annotated[list[Annotated[str, AfterValidator(_pattern_of_names)]], Field(min_length=2, max_length=2)]],
-    Field(max_length=MOST_PAIRS),
-]
+NamePattern = Annotated[str, AfterValidator(_pattern_of_names)]
+Pairs = Annotated[list[Annotated[list[NamePattern], Field(min_length=2, max_length=2)]], Field(max_length=MOST_PAIRS)]
 Scale = Annotated[
     Annotated[Literal["fit"], Tag("<fit>")] | Annotated[float, Field(ge=1e-5, le=1e3), Tag("<number>")],
     Discriminator(lambda value: "<fit>" if isinstance(value, str) else "<number>"),
@@ -263,6 +262,9 @@ class PartForm(Form):
     merge: Annotated[str, AfterValidator(_merged_name)] | None = Field(
         default=None, description="The name of the one part that these bodies of the model become."
     )
+    by_contact: bool = Field(
+        default=False, description="Whether only those of them become one part that touch; each heap is a part."
+    )
     hingeable: bool = Field(default=True, description="False where no hinge may be inserted in its interior.")
     pin: Annotated[PatternForm, AfterValidator(_pinnable)] | None = Field(
         default=None, description="What its modification has to be like."
@@ -271,6 +273,7 @@ class PartForm(Form):
         default=[], max_length=MOST_PATTERNS, description="What its modification must not be like."
     )
     thickness: Plate | None = Field(default=None, description="Thickness of its plate or panels, mm in print.")
+    shape: Look | None = Field(default=None, description="A plain plate, or as it looks; as the print says if missing.")
 
     @model_validator(mode="after")
     def _is_one_thing(self, info: ValidationInfo) -> PartForm:
@@ -286,6 +289,8 @@ class PartForm(Form):
             return '"ignore" and "merge" are for bodies of a "model"; leave them out'
         if self.ignore and self.merge is not None:
             return "is ignored and merged; keep one"
+        if self.by_contact and self.merge is None:
+            return '"by_contact" says how bodies merge; give "merge", or leave it out'
         return part_name_problem(self.name) if has_shape else None
 
 
@@ -363,8 +368,9 @@ class PrintForm(Form):
     hinge: Annotated[HingeKind, AfterValidator(_makeable)] = Field(
         default=_PRINT.hinge, description="How hinges are pinned together."
     )
-    shape: Literal["plain", "own"] = Field(
-        default=_PRINT.shape, description="Plain plates, or cut to the outlines of parts that came with a shape."
+    shape: Look = Field(
+        default=_PRINT.shape,
+        description="Plain plates, or the solids of parts that came with a shape, where they fold.",
     )
     latch: bool = Field(default=_PRINT.latch, description="Whether a detent holds the furniture open.")
     scale: Scale = Field(default="fit", description="Print size over true size; fit is the largest on the printer.")

@@ -46,6 +46,7 @@ EXPECTED = MappingProxyType(
         "mesh": 'the name of a file of shapes such as "back.obj"',
         "ignore": "true or false",
         "merge": "the name of the part that these bodies become",
+        "by_contact": "true or false",
         "parts[]": 'an object such as {"name": "seat", "box": {"center": [0, 0, 450], "size": [400, 400, 20]}}',
         "box": 'an object such as {"center": [0, 0, 450], "size": [400, 400, 20]}',
         "center": "three numbers",

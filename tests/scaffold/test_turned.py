@@ -32,8 +32,11 @@ def test_a_tilted_seat_counts_from_where_it_shows(
 
 
 def test_how_much_it_counts(scaffold: Make, box: Callable[..., Part]) -> None:
-    """Along x the legs of a table, which face y, touch no base and are taken for rails."""
-    legs = (box("left", (-80, 0, 35), (50, 4, 70)), box("right", (80, 0, 35), (50, 4, 70)))
-    found = turned(scaffold((box("top", (0, 0, 72), (200, 60, 4)), *legs), direction=(-1.0, 0.0, 0.0)))
-    share = 50 * 70 / (200 * 60 + 2 * 50 * 70)
-    assert found == pytest.approx({"left": share, "right": share})
+    """Two legs fold under a rail that is set on edge."""
+    parts = (
+        box("rail", (0, 0, 80), (200, 4, 20)),
+        box("left", (-60, 0, 35), (4, 60, 70)),
+        box("right", (60, 0, 35), (4, 60, 70)),
+    )
+    found = turned(scaffold(parts))
+    assert found == pytest.approx({"rail": 200 * 20 / (200 * 20 + 2 * 60 * 70)})

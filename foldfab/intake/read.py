@@ -17,7 +17,8 @@ from foldfab.intake.naming import part_name
 from foldfab.intake.understand import Grouping, Understood, named, parts
 from foldfab.recipe.build import Gathered, box_part, flagged
 from foldfab.recipe.edit import check_patterns
-from foldfab.recipe.form import MILLIMETRES, PartForm, RecipeForm
+from foldfab.recipe.fields import MILLIMETRES
+from foldfab.recipe.form import PartForm, RecipeForm
 from foldfab.recipe.model import FoldOptions, Part, PrintOptions, Recipe
 from foldfab.recipe.names import fits, folder_name, folder_name_problem, same_name
 from foldfab.recipe.printers import DEFAULT_PRINTER

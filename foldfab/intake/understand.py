@@ -21,7 +21,7 @@ from foldfab.intake.notes import listed, note
 from foldfab.intake.outline import Outline, main_axes, outline
 from foldfab.intake.scale import check, in_millimetres
 from foldfab.intake.tight import fitted, settled
-from foldfab.recipe.form import FARTHEST, SMALLEST_SIZE
+from foldfab.recipe.fields import FARTHEST, SMALLEST_SIZE
 from foldfab.recipe.model import Mesh, Part
 from foldfab.recipe.names import fits
 

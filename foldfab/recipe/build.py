@@ -10,16 +10,8 @@ import numpy as np
 from foldfab.geometry.arrays import Array
 from foldfab.recipe.clearance import profile
 from foldfab.recipe.contacts import BY_BOXES, Contacts, beside, resolved
-from foldfab.recipe.form import (
-    MILLIMETRES,
-    BoxForm,
-    FoldForm,
-    PartForm,
-    PatternForm,
-    PrinterForm,
-    PrintForm,
-    RecipeForm,
-)
+from foldfab.recipe.fields import MILLIMETRES
+from foldfab.recipe.form import BoxForm, FoldForm, PartForm, PatternForm, PrinterForm, PrintForm, RecipeForm
 from foldfab.recipe.model import USUAL_THICKNESS, FoldOptions, Part, Pattern, Printer, PrintOptions, Recipe
 from foldfab.recipe.patterns import snapped
 from foldfab.recipe.printers import PRINTERS

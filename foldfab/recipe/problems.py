@@ -11,20 +11,8 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from foldfab.errors import Problem
-from foldfab.recipe.form import (
-    MOST_PARTS,
-    MOST_PATTERNS,
-    OWN_WORDS,
-    TAGS,
-    BoxForm,
-    FoldForm,
-    Form,
-    PartForm,
-    PatternForm,
-    PrinterForm,
-    PrintForm,
-    RecipeForm,
-)
+from foldfab.recipe.fields import MOST_PARTS, MOST_PATTERNS, OWN_WORDS, TAGS
+from foldfab.recipe.form import BoxForm, FoldForm, Form, PartForm, PatternForm, PrinterForm, PrintForm, RecipeForm
 from foldfab.recipe.printers import LARGEST, PRINTERS, SMALLEST
 
 Location = tuple[int | str, ...]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,14 +16,11 @@ from foldfab.folding.kinematics import configuration
 from foldfab.folding.model import Chain, FoldSolution
 from foldfab.geometry.arrays import Array
 from foldfab.geometry.boxes import Boxes, stacked
+from foldfab.geometry.cube import CORNERS, FACES
 
 if TYPE_CHECKING:
     from PIL import Image
 
-_CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))
-_QUADS = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
-_FACES = np.concatenate([_QUADS[:, [0, 1, 2]], _QUADS[:, [0, 2, 3]]])
-"""(12, 3) counter-clockwise seen from outside."""
 ARROW, HEAD, WIDTH = 36.0, 14.0, 4
 """Half the length of the arrow along the folding direction, the length of its head, and its width, px."""
 PLACE = (52, 336)
@@ -71,10 +67,10 @@ def _panels(solution: FoldSolution, chain: Chain) -> list[Shell]:
 
 def _shell(name: str, kind: str, boxes: Boxes, hinges: int, turn: Array) -> Shell:
     """Boxes (n,) as one body, the last of them hinges; `turn` leads from the recipe's axes to theirs."""
-    corners = boxes.center[:, None] + np.einsum("ci,ni,nij->ncj", _CORNERS, boxes.half, boxes.axes)
+    corners = boxes.center[:, None] + np.einsum("ci,ni,nij->ncj", CORNERS, boxes.half, boxes.axes)
     count = len(corners)
-    faces = (8 * np.arange(count)[:, None, None] + _FACES).reshape(-1, 3)
-    is_hinge = np.repeat(np.arange(count) >= count - hinges, len(_FACES))
+    faces = (8 * np.arange(count)[:, None, None] + FACES).reshape(-1, 3)
+    is_hinge = np.repeat(np.arange(count) >= count - hinges, len(FACES))
     return Shell(name, "base" if kind == "base" else "panel", corners.reshape(-1, 3) @ turn, faces, is_hinge)
 
 

@@ -5,11 +5,10 @@ Round ones are inscribed, with vertices at every quarter turn, so that their box
 
 from __future__ import annotations
 
-from itertools import product
-
 import numpy as np
 
 from foldfab.geometry.arrays import Array
+from foldfab.geometry.cube import CORNERS, FACES
 from foldfab.recipe.model import Mesh
 
 SIDES = 32
@@ -17,13 +16,10 @@ SIDES = 32
 RINGS = 8
 """From the equator of a sphere to its pole."""
 
-_CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))
-_QUADS = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
-
 
 def box(half: Array) -> Mesh:
     """A box by its half lengths (3,)."""
-    return Mesh(_CORNERS * half, np.concatenate([_QUADS[:, [0, 1, 2]], _QUADS[:, [0, 2, 3]]]))
+    return Mesh(CORNERS * half, FACES)
 
 
 def cylinder(radius: float, half: float) -> Mesh:

@@ -91,6 +91,11 @@ def rectangle(middle: Array, sides: Array) -> Outline:
     return CrossSection.square(tuple(sides.tolist()), center=True).translate(tuple(middle.tolist()))
 
 
+def section(body: Solid, height: float) -> Outline:
+    """What a body shows, x and y, where it is cut at a height z."""
+    return body.slice(height)
+
+
 def union(parts: list[Solid]) -> Solid:
     """All parts as one."""
     return checked(Manifold.batch_boolean(parts, OpType.Add)) if len(parts) > 1 else parts[0]
@@ -152,6 +157,12 @@ def stays_closed(body: Solid) -> bool:
 def pieces(body: Solid) -> int:
     """How many separate bodies it is."""
     return sum(1 for part in body.decompose() if part.volume() > 0)
+
+
+def parts(body: Solid) -> list[Solid]:
+    """The separate bodies that it is, by where they begin."""
+    found = [part for part in body.decompose() if part.volume() > 0]
+    return sorted(found, key=lambda part: part.bounding_box())
 
 
 def overlap(a: Solid, b: Solid) -> float:

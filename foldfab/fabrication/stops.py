@@ -132,8 +132,8 @@ def rests(solution: FoldSolution, chain: Chain, hinge: int) -> Iterator[Stop]:
 
 
 def _names(chain: Chain, hinge: int) -> tuple[str, str, str]:
-    bodies = [chain.anchor, *chain.panels, *([chain.far] if chain.far else [])]
-    return f"{bodies[hinge]}~{bodies[hinge + 1]}", bodies[hinge], bodies[hinge + 1]
+    first, second = chain.bodies[hinge : hinge + 2]
+    return f"{first}~{second}", first, second
 
 
 def _mount(solution: FoldSolution, chain: Chain, hinge: int) -> _Mount:

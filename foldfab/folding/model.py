@@ -197,6 +197,11 @@ class Chain:
             return (self.patch,)
         return tuple(f"{self.patch}/{i + 1}" for i in range(len(self.lengths)))
 
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """Names of all that its hinges join, in their order: anchor, panels and the far base."""
+        return (self.anchor, *self.panels, *([self.far] if self.far else []))
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Step:

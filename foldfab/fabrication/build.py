@@ -12,7 +12,7 @@ from foldfab.errors import FabricationError
 from foldfab.fabrication import solids
 from foldfab.fabrication.bodies import bodies
 from foldfab.fabrication.inspect import inspect
-from foldfab.fabrication.joinery import cut_to_bed
+from foldfab.fabrication.joinery import cut_to_bed, with_breaks
 from foldfab.fabrication.model import Assembly, Finding, Joint
 from foldfab.fabrication.own import own_shapes
 from foldfab.fabrication.panels import panels
@@ -47,6 +47,7 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
     """
     tell = progress or (lambda what, share: None)
     _require_hinges(solution, posture)
+    solution = with_breaks(solution, posture)
     tell("solids", 0.0)
     described, findings = _shapes(solution)
     if solution.scaffold.recipe.print.shape == "own":

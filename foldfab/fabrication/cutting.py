@@ -8,6 +8,7 @@ either way. Costs a few booleans a place.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -16,7 +17,7 @@ import numpy as np
 from foldfab.errors import FabricationError
 from foldfab.fabrication import solids
 from foldfab.fabrication.printed import printed
-from foldfab.fabrication.seams import MOST_SPLICE, Kind, Tongue, parted, tongues
+from foldfab.fabrication.seams import MOST_REACH, Kind, Tongue, parted, tongues
 from foldfab.fabrication.shapes import Shape, cut, placed, prism
 from foldfab.fabrication.solids import Outline, Solid
 from foldfab.fabrication.walls import thin_sides
@@ -30,14 +31,33 @@ STEP = 1.0
 """Places are tried at this distance, mm."""
 MORE = 2
 """By how many pieces more than needed a part may be cut, where hinges are in the way."""
+ROOM = (MOST_REACH + 2 * ROOT) / 2 + 1.0
+"""What is left free on either side of an ideal place for a line, mm, with room for it to move."""
 PLAIN = 2e-3
 """A share of a volume that is rounding."""
 SLICE = 0.1
 """Height of the strip in which the width of a plate is taken, mm."""
+SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.1, 0.9)
+"""Where that is done, in shares of its height."""
+ALIKE = 0.9
+"""A width that is at least this share of another is about the same."""
 
 
-Ends = tuple[float, float, float, float]
-"""Least x and y, greatest x and y of a plate in a section, mm."""
+Size = tuple[float, float]
+"""mm."""
+
+
+@dataclass(frozen=True, slots=True)
+class Plate:
+    """What a line cuts, in the frame of its seam, mm."""
+
+    low: float
+    high: float
+    """From where to where along the line."""
+    y: float
+    """A height at which it is that wide."""
+    half: float
+    """Half its thickness."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -72,22 +92,21 @@ class Stock:
     """What all pieces of a part have in common."""
 
     name: str
-    bed: tuple[float, float]
+    bed: Size
     fit: float
     turn: Array
     """(3, 3) rows: the bed's x, y and z as the part lies, canonical frame."""
     taken: tuple[Array, ...]
     """(n, 3) corners of each thing that no line may come near, canonical frame."""
 
-    def size(self, piece: Piece) -> tuple[float, float]:
+    def size(self, piece: Piece) -> Size:
         """Length and width on the bed, mm."""
         x, y = np.ptp(solids.mesh(piece.solid)[0] @ self.turn[:2].T, axis=0).tolist()
         return x, y
 
     def fits(self, piece: Piece) -> bool:
         """Whether a piece fits the bed, one way round or the other."""
-        x, y = self.size(piece)
-        return any(x <= width and y <= depth for width, depth in (self.bed, self.bed[::-1]))
+        return not ways(self.size(piece), self.bed)
 
 
 def cut_up(whole: Piece, stock: Stock) -> tuple[list[Piece], list[Key]]:
@@ -113,39 +132,58 @@ def _place(piece: Piece, stock: Stock) -> tuple[float, ...]:
 
 def _cut(piece: Piece, stock: Stock, taken: list[Array]) -> tuple[list[Piece], list[Key]]:
     """Cuts a piece once."""
-    for across, limit in _ways(stock.size(piece), stock.bed):
+    for cut_side, limits in ways(stock.size(piece), stock.bed):
         side, other, up = stock.turn
         # Rows x, y, z of the seam's frame: right-handed, with z along what is too long.
-        frame = np.stack([other, up, side] if across == 0 else [-side, up, other])
+        frame = np.stack([other, up, side] if cut_side == 0 else [-side, up, other])
         local = solids.placed(piece.solid, np.zeros(3), frame.T)
-        reaches = [(float(z.min()), float(z.max())) for z in (corners @ frame[2] for corners in taken)]
-        for at, is_strict in _places(local, limit):
-            found = _line(local, at, stock.fit, reaches, is_strict=is_strict)
+        low, high = solids.bounds(local)
+        near = [block for block in (corners @ frame.T for corners in taken) if _is_near(block, low, high)]
+        reaches = [(float(block[:, 2].min()), float(block[:, 2].max())) for block in near]
+        spared = ideals(float(low[0]), float(high[0]), limits[1 - cut_side])
+        for at, is_strict in _places(float(low[2]), float(high[2]), limits[cut_side]):
+            found = _spared(_line(local, at, stock.fit, reaches, is_strict=is_strict), spared)
             made = _apart(piece, frame, tuple(tongue for tongue, _ in found), at, stock.fit) if found else []
             if made and all(np.ptp(solids.mesh(p.solid)[0] @ frame[2]) >= LEAST_PIECE for p in made):
-                return made, [_key(tongue, ends, at, stock.fit, frame) for tongue, ends in found]
+                return made, [_key(tongue, plate, at, stock.fit, frame) for tongue, plate in found]
     x, y = stock.size(piece)
     told = f"{stock.name}, {x:.0f} x {y:.0f} mm here, is longer than the bed, and its hinges leave no place to cut it"
     raise FabricationError(f"{told}; print at a smaller scale, or fold along another direction")
 
 
-def _ways(size: tuple[float, float], bed: tuple[float, float]) -> list[tuple[int, float]]:
-    """Across which side of the bed's two it can be cut and how long pieces may be, the fewest pieces first."""
+def _is_near(block: Array, low: Array, high: Array) -> bool:
+    """Whether corners (n, 3) reach into what lies between two others (3,)."""
+    return bool((block.min(axis=0) < high).all() and (low < block.max(axis=0)).all())
+
+
+def ways(size: Size, bed: Size) -> list[tuple[int, Size]]:
+    """Which of its sides to cut, and how long pieces may be either way, the fewest pieces first; none where it fits."""
     found = []
     for limits in (bed, bed[::-1]):
-        counts = [int(np.ceil(length / limit)) for length, limit in zip(size, limits, strict=True)]
-        found += [(counts[0] * counts[1], across, limits[across]) for across in (0, 1) if counts[across] > 1]
-    return [(across, limit) for _, across, limit in sorted(set(found))]
+        counts = [count_of(length, limit) for length, limit in zip(size, limits, strict=True)]
+        if counts == [1, 1]:
+            return []
+        found += [(counts[0] * counts[1], -limits[side], side, limits) for side in (0, 1) if counts[side] > 1]
+    return [(side, limits) for _, _, side, limits in sorted(set(found))]
 
 
-def _places(local: Solid, limit: float) -> Iterator[tuple[float, bool]]:
+def count_of(length: float, limit: float) -> int:
+    """How many pieces it takes, all but the last with a tongue at its end."""
+    return 1 if length <= limit else max(2, int(np.ceil((length - MOST_REACH) / (limit - MOST_REACH))))
+
+
+def ideals(low: float, high: float, limit: float) -> list[float]:
+    """Where lines would make the fewest pieces that are as long as each other, mm."""
+    count = count_of(high - low, limit)
+    return [low + (high - low) * k / count for k in range(1, count)]
+
+
+def _places(low: float, high: float, limit: float) -> Iterator[tuple[float, bool]]:
     """Where to cut first, and whether nothing may begin or end there: for the fewest pieces, nearest to equal ones."""
-    low, high = (float(corner[2]) for corner in solids.bounds(local))
-    usable = limit - MOST_SPLICE
-    least = int(np.ceil((high - low - MOST_SPLICE) / usable))
-    for count in range(max(least, 2), max(least, 2) + MORE + 1):
+    usable, least = limit - MOST_REACH, count_of(high - low, limit)
+    for count in range(least, least + MORE + 1):
         ideal = low + (high - low) / count
-        start = max(low + LEAST_PIECE, high - (count - 1) * usable - MOST_SPLICE)
+        start = max(low + LEAST_PIECE, high - (count - 1) * usable - MOST_REACH)
         end = min(low + usable, high - LEAST_PIECE)
         steps = np.arange(-int((ideal - start) / STEP), int((end - ideal) / STEP) + 1)
         places = [round(float(ideal + STEP * k), 3) for k in sorted(steps.tolist(), key=lambda k: (abs(k), k))]
@@ -155,18 +193,19 @@ def _places(local: Solid, limit: float) -> Iterator[tuple[float, bool]]:
 
 def _line(
     local: Solid, at: float, fit: float, taken: list[tuple[float, float]], *, is_strict: bool
-) -> list[tuple[Tongue, Ends]]:
+) -> list[tuple[Tongue, Plate]]:
     """The tongues of a line at z = `at`, each with the plate that it is in; none where it cannot be there."""
     if any(low - ROOT < at < high + ROOT for low, high in taken):
         return []
     section = solids.section(local, at)
-    found = list[tuple[Tongue, Ends]]()
+    found = list[tuple[Tongue, Plate]]()
     for bit in section.decompose():
         # A hole in the section is the bore of a pin.
-        own = tongues(*_core(bit), at, fit) if len(bit.to_polygons()) == 1 else ()
+        plate = _core(bit)
+        own = tongues(plate.low, plate.high, at, fit) if len(bit.to_polygons()) == 1 else ()
         if not own:
             return []
-        found += [(tongue, bit.bounds()) for tongue in own]
+        found += [(tongue, plate) for tongue in own]
     if not found:
         return []
     start, end = at - ROOT, at + max(tongue.reach for tongue, _ in found) + ROOT
@@ -177,12 +216,22 @@ def _line(
     return found if all(_is_plain(local, section, span, (start, end)) for span in spans) else []
 
 
-def _core(bit: Outline) -> tuple[float, float]:
-    """From where to where a plate is whole at half its height."""
+def _spared(found: list[tuple[Tongue, Plate]], lines: list[float]) -> list[tuple[Tongue, Plate]]:
+    """Those tongues that are not where another line will cross this one; all, where there would be too few."""
+    free = [one for one in found if not any(one[0].span[0] < x + ROOM and x - ROOM < one[0].span[1] for x in lines)]
+    return free if {plate for _, plate in free} == {plate for _, plate in found} else found
+
+
+def _core(bit: Outline) -> Plate:
+    """Where a plate is widest; of heights at which it is about as wide, the one nearest to its middle."""
     x0, y0, x1, y1 = bit.bounds()
-    middle = solids.rectangle(np.array([x0 + x1, y0 + y1]) / 2, np.array([x1 - x0 + 1, SLICE]))
-    parts = [part.bounds() for part in (bit ^ middle).decompose()]
-    return max(((part[0], part[2]) for part in parts), key=lambda ends: ends[1] - ends[0], default=(0.0, 0.0))
+    found = list[Plate]()
+    for share in SHARES:
+        y = y0 + share * (y1 - y0)
+        strip = bit ^ solids.rectangle(np.array([(x0 + x1) / 2, y]), np.array([x1 - x0 + 1, SLICE]))
+        found += [Plate(part.bounds()[0], part.bounds()[2], y, (y1 - y0) / 2) for part in strip.decompose()]
+    most = max(plate.high - plate.low for plate in found)
+    return next(plate for plate in found if plate.high - plate.low >= ALIKE * most)
 
 
 def _is_plain(local: Solid, section: Outline, x: tuple[float, float], z: tuple[float, float]) -> bool:
@@ -229,10 +278,10 @@ def _block(ends: tuple[Array, Array], low: float, high: float) -> Shape:
     return prism(((x0, z0), (x1, z0), (x1, z1), (x0, z1)), low, high)
 
 
-def _key(tongue: Tongue, ends: Ends, at: float, fit: float, frame: Array) -> Key:
-    (x0, y0, x1, y1), tip = ends, at + tongue.reach
-    x, y = tongue.middle, (y0 + y1) / 2
-    points = np.array([(x, y, tip - fit), (x, y, tip + fit + ROOT / 2), (x0, y, at), (x1, y, at)])
-    block = np.array([(u, v, w) for u in tongue.span for v in (y0, y1) for w in (at - ROOT, tip + ROOT)])
+def _key(tongue: Tongue, plate: Plate, at: float, fit: float, frame: Array) -> Key:
+    x, y, tip = tongue.middle, plate.y, at + tongue.reach
+    points = np.array([(x, y, tip - fit), (x, y, tip + fit + ROOT / 2), (plate.low, y, at), (plate.high, y, at)])
+    sides = (tongue.span, (y - plate.half, y + plate.half), (at - ROOT, tip + ROOT))
+    block = np.array(list(itertools.product(*sides)))
     inside, beyond, *line = points @ frame
-    return Key(tongue.kind, inside, beyond, np.stack(line), (y1 - y0) / 2, frame[2], block @ frame)
+    return Key(tongue.kind, inside, beyond, np.stack(line), plate.half, frame[2], block @ frame)

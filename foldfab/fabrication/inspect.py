@@ -53,7 +53,7 @@ def inspect(
     """
     findings = _soundness(made)
     # What is cut is looked at again in pieces.
-    findings += [] if cuts_parts(assembly) else fits(assembly)
+    findings += [] if cuts_parts(assembly.solution, assembly.posture) else fits(assembly)
     if not any(f.is_fatal for f in findings):
         findings += _gaps(assembly, made)
         folding = {name: solids.cut(solid, gives.get(name, [])) for name, solid in made.items()}

@@ -14,25 +14,70 @@ import numpy as np
 
 from foldfab.fabrication import solids
 from foldfab.fabrication.bodies import body
-from foldfab.fabrication.cutting import Key, Piece, Stock, cut_up
+from foldfab.fabrication.cutting import ROOM, Key, Piece, Stock, cut_up, ideals, ways
 from foldfab.fabrication.hinges import Mark, knuckles
 from foldfab.fabrication.inspect import HELD, fits
 from foldfab.fabrication.lying import laid
 from foldfab.fabrication.model import Assembly, Body, Finding, Joint, Seam
 from foldfab.fabrication.posture import cuts_parts
+from foldfab.fabrication.room import footprint
 from foldfab.fabrication.seams import fit_of
 from foldfab.fabrication.solids import Solid
+from foldfab.folding.model import Chain, FoldSolution
 from foldfab.geometry.arrays import Array
+from foldfab.recipe.model import Posture
 
 PULL_FITS = 4.0
 """Pieces must meet before they are pulled so many fits apart."""
 ROUNDING = 0.01
 """By how much a gap may be off, mm."""
+STRAIGHT = 1 - 1e-9
+"""Cosine above which a hinge runs along an axis of the bed."""
 PROBE = 0.1
 """Half the side of the cube that looks for a piece, mm."""
 
 Marks = dict[str, tuple[tuple[Mark, ...], tuple[Mark, ...]]]
 """By hinge, the knuckles of the first and of the second of its parts, from where to where along its axis, mm."""
+
+
+def with_breaks(solution: FoldSolution, posture: Posture) -> FoldSolution:
+    """The solution with a stretch free of knuckles in all hinges of a patch where its panels will have to be cut."""
+    if not cuts_parts(solution, posture):
+        return solution
+    return replace(solution, chains=tuple(replace(c, breaks=_breaks(solution, c)) for c in solution.chains))
+
+
+def _breaks(solution: FoldSolution, chain: Chain) -> tuple[Mark, ...]:
+    """Where the panels of a chain, and the bases that it stands on, would best be cut."""
+    x, y, _ = solution.scaffold.recipe.print.printer.build_volume
+    low, high = (float(end) for end in chain.span)
+    middles = set[float]()
+    for length in chain.lengths:
+        middles |= _lines((low, high), float(length) + 2 * chain.panel, (x, y))
+    for base in solution.scaffold.bases:
+        axis = int(np.argmax(np.abs(chain.along)))
+        if base.name in chain.bodies and abs(chain.along[axis]) > STRAIGHT:
+            least, most = footprint(base, solution.thickness)
+            lines = _lines((float(least[axis]), float(most[axis])), float((most - least)[1 - axis]), (x, y))
+            middles |= {(line - float(chain.root[axis])) * float(chain.along[axis]) for line in lines}
+    wanted = [mark for mark in _merged(middles) if mark[0] < high and low < mark[1]]
+    return tuple(wanted)
+
+
+def _lines(reach: Mark, width: float, bed: tuple[float, float]) -> set[float]:
+    """Across a part that reaches so far along the hinges and is so wide, in the way with the fewest pieces."""
+    able = ways((reach[1] - reach[0], width), bed)
+    return {line for side, limits in able[:1] for line in ideals(*reach, limits[0])} if able else set()
+
+
+def _merged(middles: set[float]) -> list[Mark]:
+    found: list[Mark] = []
+    for middle in sorted(middles):
+        mark = (middle - ROOM, middle + ROOM)
+        if found and mark[0] <= found[-1][1]:
+            mark = (found.pop()[0], mark[1])
+        found.append(mark)
+    return found
 
 
 def cut_to_bed(assembly: Assembly, made: dict[str, Solid]) -> tuple[Assembly, list[Finding]]:
@@ -41,7 +86,7 @@ def cut_to_bed(assembly: Assembly, made: dict[str, Solid]) -> tuple[Assembly, li
     Raises:
         FabricationError: such a part can be cut nowhere.
     """
-    if not cuts_parts(assembly):
+    if not cuts_parts(assembly.solution, assembly.posture):
         return assembly, []
     marks = _marks(assembly)
     x, y, _ = assembly.solution.scaffold.recipe.print.printer.build_volume
@@ -83,7 +128,7 @@ def _marks(assembly: Assembly) -> Marks:
     for chain in assembly.solution.chains:
         thickness = assembly.solution.thickness.of(chain.panel)
         for hinge, pair in enumerate(pairwise(chain.bodies)):
-            own, start = knuckles(chain.hinge_spans[hinge], thickness), float(chain.hinge_spans[hinge][0])
+            own, start = knuckles(chain.hinge_spans[hinge], thickness, chain.breaks), float(chain.hinge_spans[hinge][0])
             carrier, follower = (tuple((a - start, b - start) for a, b in m) for m in (own.carrier, own.follower))
             # Bases carry, and of two panels the earlier one does.
             is_far = hinge == len(chain.lengths)

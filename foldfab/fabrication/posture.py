@@ -28,9 +28,9 @@ def needs_pins(posture: Posture) -> bool:
     return posture == "plate"
 
 
-def cuts_parts(assembly: Assembly) -> bool:
+def cuts_parts(solution: FoldSolution, posture: Posture) -> bool:
     """Whether parts longer than the bed are cut: where each is printed for itself, at a scale that was asked for."""
-    return needs_pins(assembly.posture) and assembly.solution.scaffold.recipe.print.scale is not None
+    return needs_pins(posture) and solution.scaffold.recipe.print.scale is not None
 
 
 def edge_problem(solution: FoldSolution) -> str | None:

@@ -37,8 +37,8 @@ LEAST_SPLICE = 4.0
 """Least width of a part that is spliced, mm: two halves of four lines each."""
 HOOK_SHARE = 0.2
 """How far the halves of a splice hook into each other, as a share of its width."""
-SPLICE_LENGTH, MOST_SPLICE = 2.0, 10.0
-"""Length of a splice: so many widths, at most so many mm."""
+SPLICE_LENGTH, MOST_REACH = 2.0, 10.0
+"""Length of a splice: so many widths, at most so many mm, which is more than any tongue reaches."""
 SUNK = 1.0
 """How far tongues begin inside of their piece, mm: bodies that should be one overlap."""
 BEYOND = 10.0
@@ -104,7 +104,7 @@ def _dovetail(middle: float, share: float, at: float, fit: float) -> Tongue:
 def _splice(low: float, high: float, at: float, fit: float) -> Tongue:
     """The half at lower x belongs to the piece below the line, and hooks into the other one at its end."""
     width, middle = high - low, (low + high - fit) / 2
-    hook, length = HOOK_SHARE * width / 2, min(SPLICE_LENGTH * width, MOST_SPLICE)
+    hook, length = HOOK_SHARE * width / 2, min(SPLICE_LENGTH * width, MOST_REACH)
     out = low - fit - LEAST_FIT
     right = ((middle - hook, at - SUNK), (middle - hook, at + length / 2), (middle + hook, at + length / 2))
     outline = (*right, (middle + hook, at + length), (out, at + length), (out, at - SUNK))

@@ -160,9 +160,12 @@ def pieces(body: Solid) -> int:
 
 
 def parts(body: Solid) -> list[Solid]:
-    """The separate bodies that it is, by where they begin."""
-    found = [part for part in body.decompose() if part.volume() > 0]
-    return sorted(found, key=lambda part: part.bounding_box())
+    """The separate bodies that it is, by where they begin; hollows stay with theirs."""
+    found = body.decompose()
+    whole = [part for part in found if part.volume() > 0]
+    if len(whole) < len(found):
+        whole = [checked(part ^ body) for part in whole]
+    return sorted(whole, key=lambda part: part.bounding_box())
 
 
 def overlap(a: Solid, b: Solid) -> float:

@@ -126,7 +126,7 @@ def rests(solution: FoldSolution, chain: Chain, hinge: int) -> Iterator[Stop]:
     top = -mount.thickness.axis_height
     reach = mount.thickness.gap / np.sin(AIM)
     thick = min(mount.thickness.panel, mount.depth + top)
-    for low, high in _places(mount.span, WIDEST):
+    for low, high in _places(mount.span, WIDEST, mount.marks.free):
         tab = box((0.0, low, top - thick), (reach, high, top))
         yield Stop(name, "rest", True, base, placed(tab, mount.origin, mount.frame), panel)
 
@@ -145,7 +145,7 @@ def _mount(solution: FoldSolution, chain: Chain, hinge: int) -> _Mount:
     side = float(np.sign(folded - open_)) * (-1.0 if is_far else 1.0)
     frame = np.stack([side * chain.across, np.cross(out, side * chain.across), out])
     way = float(frame[1] @ chain.along)
-    marks = knuckles(chain.hinge_spans[hinge], thickness.of(chain.panel))
+    marks = knuckles(chain.hinge_spans[hinge], thickness.of(chain.panel), chain.breaks)
     marks = marks if way > 0 else marks.mirrored
     low, high = sorted(way * float(end) for end in chain.hinge_spans[hinge])
     face, own = faces(base, thickness), thickness.of(chain.panel)
@@ -191,7 +191,7 @@ def _laps(chain: Chain, hinge: int, thickness: Thickness, name: str) -> Iterator
         recess = _spread(-back * close / 2, back * (half + 1.0), 0.0, z * (reach + gap))
         below, over = chain.panels[hinge - 1], chain.panels[hinge]
         body, other = (over, below) if above else (below, over)
-        for low, high in _places((float(chain.span[0]), float(chain.span[1])), WIDEST):
+        for low, high in _places((float(chain.span[0]), float(chain.span[1])), WIDEST, chain.breaks):
             added, hole = _slab(tongue, low, high), _slab(recess, low - gap, high + gap)
             yield Stop(name, "lap", False, body, placed(added, origin, axes), other, placed(hole, origin, axes))
 
@@ -258,11 +258,12 @@ def _within(marks: tuple[Mark, ...], gap: float) -> Iterator[Mark]:
             yield (low + high - width) / 2, (low + high + width) / 2
 
 
-def _places(span: Mark, widest: float) -> Iterator[Mark]:
-    """Places on a span: in its middle, then towards its ends, then narrow ones."""
+def _places(span: Mark, widest: float, breaks: tuple[Mark, ...]) -> Iterator[Mark]:
+    """Places on a span: in its middle, then towards its ends, then narrow ones; none in what is to be left free."""
     low, high = span
     for width in (min((high - low) / 2, widest), min((high - low) / 4, widest / 2)):
         if width >= NARROWEST:
             for share in (0.5, 0.1, 0.9):
                 start = low + share * (high - low - width)
-                yield start, start + width
+                if not any(a < start + width and start < b for a, b in breaks):
+                    yield start, start + width

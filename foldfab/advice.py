@@ -10,6 +10,7 @@ import numpy as np
 from foldfab import pipeline
 from foldfab.errors import FoldfabError
 from foldfab.recipe.model import Part, Recipe
+from foldfab.scaffold.directions import AXES, lines
 
 MOST_PARTS = 60
 """Furniture with more parts is not tried part by part."""
@@ -31,6 +32,10 @@ def what_would_help(recipe: Recipe) -> tuple[str, ...]:
 
 
 def _folds(recipe: Recipe) -> bool:
+    """Whether it folds along its direction, or along any that is tried where it names none."""
+    if recipe.direction is None:
+        ways = [way for line in lines(recipe) for way in (line.direction, 0.0 - line.direction)]
+        return any(_folds(replace(recipe, direction=way)) for way in ways)
     try:
         pipeline.foldabilize(recipe)
     except FoldfabError:
@@ -52,7 +57,7 @@ def _changes(recipe: Recipe) -> Iterator[tuple[str, Recipe]]:
     thin = max(THINNEST, recipe.print.thickness / 2)
     if thin < recipe.print.thickness:
         yield f"with plates of {thin:g} mm", replace(recipe, print=replace(recipe.print, thickness=thin))
-    for name, axis in pipeline.AXES.items():
+    for name, axis in AXES.items():
         other = np.array(axis, dtype=np.float64)
         if recipe.direction is not None and np.abs(other - recipe.direction).max() > 1e-6:
             yield f"along {name}", replace(recipe, direction=other)

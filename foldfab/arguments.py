@@ -57,9 +57,17 @@ def parser(run: Mapping[str, Run], version: type[argparse.Action]) -> argparse.A
     folding.add_argument(
         "--verify", action="store_true", help="try the fold out at every moment, apart from the search"
     )
+    trying = _command(commands, run, "directions", "which directions it folds along, best first, with pictures")
+    trying.add_argument(
+        "-o", "--output", metavar="DIR", default="directions", help="where its folder goes (directions)"
+    )
+    trying.add_argument("--json", action="store_true", help="print the facts as JSON")
     comparing = _command(commands, run, "postures", "what each posture takes, by the slicer")
     understanding = _command(commands, run, "recipe", "write the recipe that a file is understood as")
-    told = ((comparing, "show no progress"), (making, "show no progress and no summary"), (folding, "show no progress"))
+    looking = "show no progress"
+    told = (
+        (trying, looking), (comparing, looking), (making, f"{looking} and no summary"), (folding, looking),
+    )  # fmt: skip
     for command, quiet in (*told, (understanding, "no notes")):
         what = "a recipe (.json) or its name, a STEP, GLB, glTF, OBJ, 3MF or STL file, or a folder of STL files"
         command.add_argument("recipe", metavar="FILE", help=what)

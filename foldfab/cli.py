@@ -124,6 +124,26 @@ def _fold(arguments: argparse.Namespace) -> int:
     return 1 if any(verdict.violations for verdict in verdicts) else 0
 
 
+def _directions(arguments: argparse.Namespace) -> int:
+    progress = _Progress(arguments.quiet or arguments.json)
+    recipe = _load(arguments, progress)
+    from foldfab import pipeline, survey
+
+    rows = pipeline.directions(recipe, progress)
+    folds = rows[0].best.solution is not None
+    if folds:
+        progress("drawing")
+        folder = survey.write(rows, recipe.name, Path(arguments.output) / recipe.name)
+    progress.done()
+    if arguments.json:
+        _print_json(survey.facts(rows, recipe.name))
+    else:
+        print(survey.table(rows, recipe.name))
+        if folds:
+            print(f"\nPictures: {folder / survey.picture_name('RANK')}")
+    return 0 if folds else 1
+
+
 def _advised(recipe: Recipe, progress: _Progress, solve: Callable[[], Any]) -> Any:
     """What `solve` gives; where it refuses, its error with what would help."""
     from foldfab.errors import FoldfabError
@@ -297,6 +317,7 @@ _COMMANDS: dict[str, Run] = {
     "print": _print,
     "fold": _fold,
     "recipe": _recipe,
+    "directions": _directions,
     "postures": _postures,
     "check": _check,
     "recipes": _recipes,

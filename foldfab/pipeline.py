@@ -13,30 +13,21 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from foldfab.errors import AbstractionError, FoldfabError, FoldingError, Problem, RecipeError
-from foldfab.geometry.arrays import Array
+from foldfab.errors import FoldingError, Problem, RecipeError
+from foldfab.fitting import abstracted, along, settled_posture
 from foldfab.recipe.model import Posture, Recipe
 
 if TYPE_CHECKING:
     import build123d
 
+    from foldfab.directions import Row
     from foldfab.export.report import Report
     from foldfab.fabrication.model import Assembly
     from foldfab.folding.model import FoldSolution
-    from foldfab.scaffold.model import Scaffold
     from foldfab.validity.model import Verdict, Violation
 
 Progress = Callable[[str], None]
 """Called with what is being done, one short line."""
-
-AXES = {"-z": (0, 0, -1), "-x": (-1, 0, 0), "-y": (0, -1, 0), "+z": (0, 0, 1), "+x": (1, 0, 0), "+y": (0, 1, 0)}
-"""The directions that "auto" tries, in this order."""
-MARGIN_THICKNESSES = 2.0
-"""How much wider than the furniture's sheets the print may be on account of plates and knuckles, in K."""
-SCALE_ROUNDS = 6
-"""How often the scale of a print is reduced until it fits the bed."""
 
 
 def load(
@@ -122,28 +113,37 @@ def prepare() -> None:
 
 
 def foldabilize(recipe: Recipe) -> FoldSolution:
-    """The cheapest folding solution of a recipe along its direction, or along the best of six where it names none.
+    """The cheapest folding solution of a recipe along its direction, or along the best one where it names none.
 
     Raises:
         AbstractionError: the parts make no scaffold along the direction; the message names directions that would do.
         FoldingError: nothing folds.
     """
-    recipe = with_pins(recipe)
-    if recipe.direction is not None:
-        return _along(recipe, recipe.direction)
-    found: list[tuple[int, float, int, FoldSolution]] = []
-    reasons = []
-    for rank, (name, axis) in enumerate(AXES.items()):
-        try:
-            solution = _along(recipe, np.array(axis, dtype=np.float64))
-        except FoldfabError as error:
-            reasons.append(f"{name}: {error}")
-            continue
-        gone = sum(m.is_deleted for m in solution.modifications)
-        found.append((gone, round(solution.cost, 9), rank, solution))
-    if not found:
-        raise FoldingError(f"{recipe.name} folds along none of the six axis directions\n  " + "\n  ".join(reasons))
-    return min(found, key=lambda f: f[:3])[3]
+    recipe = directed(with_pins(recipe))
+    assert recipe.direction is not None
+    return along(recipe, recipe.direction)
+
+
+def directed(recipe: Recipe) -> Recipe:
+    """The recipe with the best direction, and why it is that one, where it names none.
+
+    Raises:
+        FoldingError: it folds along no direction that is tried.
+    """
+    from foldfab.directions import settled
+
+    return settled(with_pins(recipe))
+
+
+def directions(recipe: Recipe, tell: Progress = lambda text: None) -> tuple[Row, ...]:
+    """What becomes of a recipe along each direction that is tried, best first.
+
+    Raises:
+        FoldingError: the plates are too thin for the hinges of the posture.
+    """
+    from foldfab.directions import ranked
+
+    return ranked(with_pins(recipe), tell)
 
 
 def with_pins(recipe: Recipe) -> Recipe:
@@ -172,7 +172,7 @@ def alternatives(recipe: Recipe, count: int) -> tuple[FoldSolution, ...]:
 
     best = foldabilize(recipe).scaffold
     # Not `best` itself, which may be disconnected where parts must not be split.
-    return ranked(_abstracted(recipe, best.direction, best.scale), count)
+    return ranked(abstracted(best.recipe, best.direction, best.scale), count)
 
 
 def verify(solution: FoldSolution) -> tuple[Violation, ...]:
@@ -199,7 +199,7 @@ def fabricate(solution: FoldSolution, *, posture: Posture | None = None, progres
     from foldfab.fabrication.build import build
 
     tell = (lambda what, share: progress(f"{what} {share:.0%}")) if progress else None
-    return build(solution, posture or _settled(solution.scaffold.recipe), tell)
+    return build(solution, posture or settled_posture(solution.scaffold.recipe), tell)
 
 
 def write(assembly: Assembly, folder: Path | str, *, step: bool = False) -> list[Path]:
@@ -264,83 +264,3 @@ def shipped() -> tuple[Path, ...]:
     from foldfab.recipe.find import shipped as found
 
     return found()
-
-
-def _along(recipe: Recipe, direction: Array) -> FoldSolution:
-    from foldfab.fabrication.room import share_of_bed
-    from foldfab.folding.solve import solve
-
-    posture = _settled(recipe)
-    if recipe.print.scale is not None:
-        return _standing(solve(_abstracted(recipe, direction, recipe.print.scale)), posture)
-    scale = _fitting_scale(recipe, direction, posture)
-    for _ in range(SCALE_ROUNDS):
-        solution = _standing(solve(_abstracted(recipe, direction, scale)), posture)
-        share = share_of_bed(solution, posture)
-        if share <= 1.0:
-            return solution
-        scale *= 0.99 / share
-    raise FoldingError(
-        f"{recipe.name}, {posture}, does not fit the {recipe.print.printer.name}; give a scale below {scale:.3g}"
-    )
-
-
-def _settled(recipe: Recipe) -> Posture:
-    if recipe.print.posture == "auto":
-        raise FoldingError(f"{recipe.name}: its posture is auto; call foldfab.postures.settled(recipe) first")
-    return recipe.print.posture
-
-
-def _standing(solution: FoldSolution, posture: Posture) -> FoldSolution:
-    """The solution itself, if it can be printed in its posture."""
-    from foldfab.fabrication.posture import edge_problem
-
-    problem = edge_problem(solution) if posture == "edge" else None
-    if problem:
-        raise FoldingError(f"{solution.scaffold.recipe.name}: {problem}")
-    return solution
-
-
-def _abstracted(recipe: Recipe, direction: Array, scale: float) -> Scaffold:
-    from foldfab.scaffold.abstract import abstract
-
-    try:
-        return abstract(recipe, direction, scale)
-    except AbstractionError as error:
-        able = [name for name, axis in AXES.items() if name[0] == "-" and _has_scaffold(recipe, axis, scale)]
-        advice = f"try --direction {' or '.join(able)}" if able else "no axis direction gives a scaffold"
-        told = np.array2string(np.asarray(direction), precision=3, suppress_small=True)
-        raise AbstractionError(f"{recipe.name} along {told}: {error}; {advice}", error.parts) from error
-
-
-def _has_scaffold(recipe: Recipe, axis: tuple[int, int, int], scale: float) -> bool:
-    from foldfab.scaffold.abstract import abstract
-
-    try:
-        return bool(abstract(recipe, np.array(axis, dtype=np.float64), scale).patches)
-    except AbstractionError:
-        return False
-
-
-def _fitting_scale(recipe: Recipe, direction: Array, posture: Posture) -> float:
-    """About the largest scale at which the furniture fits the bed in its posture, either way round."""
-    from foldfab.fabrication.room import largest_scale
-
-    size = _size(recipe)
-    thickest = max(recipe.print.thickness, recipe.print.base_thickness or 0.0)
-    bed = np.array(recipe.print.printer.build_volume) - MARGIN_THICKNESSES * thickest
-    if (bed <= 0).any():
-        raise FoldingError(f"the {recipe.print.printer.name} is too small for plates of {thickest:g} mm")
-    if posture != "open":
-        from foldfab.geometry.rotation import upright
-
-        size = np.abs(upright(direction)) @ size
-    return largest_scale(recipe, posture, size, bed)
-
-
-def _size(recipe: Recipe) -> Array:
-    """(3,) true size of the furniture's bounds, mm."""
-    reach = np.array([np.abs(p.axes.T) @ p.size / 2 for p in recipe.parts])
-    center = np.array([p.center for p in recipe.parts])
-    size: Array = (center + reach).max(0) - (center - reach).min(0)
-    return size

@@ -49,7 +49,7 @@ def compared(recipe: Recipe, tell: Callable[[str], None] = lambda text: None) ->
     from foldfab.slicing.program import find_slicer
 
     find_slicer()
-    recipe = _scaled(recipe)
+    recipe = _scaled(pipeline.directed(recipe))
     rows = []
     for posture in POSTURES:
         tell(f"printing it {posture}")
@@ -61,6 +61,8 @@ def settled(recipe: Recipe, tell: Callable[[str], None] = lambda text: None) -> 
     """The recipe with a posture instead of `auto`, and why it is that one."""
     if recipe.print.posture != "auto":
         return recipe
+    # All postures of one fold are compared, and the direction is looked for once.
+    recipe = pipeline.directed(recipe)
     try:
         rows = [row for row in compared(recipe, tell) if row.posture in IN_PLACE and not row.problem]
         if not rows:

@@ -12,6 +12,7 @@ from foldfab.fabrication.model import Assembly
 from foldfab.folding.model import FoldSolution, Modification
 from foldfab.geometry.arrays import Array
 from foldfab.postures import Row as PostureRow
+from foldfab.scaffold.directions import title
 from foldfab.validity.model import Verdict
 
 WINDOW = 1e-9
@@ -40,11 +41,11 @@ def fold_table(solution: FoldSolution, milliseconds: float) -> str:
     ]
     scaffold = solution.scaffold
     total = (
-        f"{scaffold.recipe.name} folds along {_vector(scaffold.direction)}: {_count(len(solution.steps), 'unit')}, "
+        f"{scaffold.recipe.name} folds along {title(scaffold.direction)}: {_count(len(solution.steps), 'unit')}, "
         f"{_count(len(scaffold.patches), 'foldable patch')}, cost {cost_and_gap(solution)}, "
         f"ordering {scaffold.recipe.fold.ordering}, solved in {milliseconds:.0f} ms"
     )
-    return "\n".join([total, "", *_aligned(rows), *_notes(solution)])
+    return "\n".join([total, "", *aligned(rows), *_notes(solution)])
 
 
 def fold_facts(solution: FoldSolution, milliseconds: float) -> dict[str, Any]:
@@ -81,10 +82,10 @@ def alternatives_table(solutions: Sequence[FoldSolution], milliseconds: float) -
         rows.append((str(rank), *cells, "; ".join(_differences(first, solution)) if rank > 1 else ""))
     scaffold = first.scaffold
     total = (
-        f"{scaffold.recipe.name} along {_vector(scaffold.direction)}: {_count(len(solutions), 'fold')}, "
+        f"{scaffold.recipe.name} along {title(scaffold.direction)}: {_count(len(solutions), 'fold')}, "
         f"cost {cost_and_gap(first)}, solved in {milliseconds:.0f} ms"
     )
-    return "\n".join([total, "", *_aligned(rows)])
+    return "\n".join([total, "", *aligned(rows)])
 
 
 def alternatives_facts(solutions: Sequence[FoldSolution], milliseconds: float) -> dict[str, Any]:
@@ -153,6 +154,13 @@ def change(modification: Modification) -> str:
     return f"{modification.patch} {' and '.join(done)} {modification.reason}".strip() if done else ""
 
 
+def aligned(rows: Iterable[Sequence[str]]) -> list[str]:
+    """Rows of cells as lines, every column but the last padded to its widest cell."""
+    cells = [tuple(row) for row in rows]
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in cells]
+
+
 def _is_narrowed(modification: Modification) -> bool:
     low, high = modification.window
     return not modification.is_deleted and high - low < 1 - WINDOW
@@ -201,14 +209,14 @@ def postures_table(rows: Iterable[PostureRow]) -> str:
         hours = f"{row.seconds / 3600:.1f} h"
         figures = (f"{row.filament_g:.0f} g", f"{row.support_g:.1f} g", f"{row.height_mm:.0f} mm")
         cells.append((row.posture, hours, *figures, ", ".join(notes)))
-    return "\n".join(_aligned(cells))
+    return "\n".join(aligned(cells))
 
 
 def _headline(assembly: Assembly) -> str:
     recipe = assembly.solution.scaffold.recipe
-    way = _vector(assembly.solution.scaffold.direction)
-    title = f"{recipe.name}: folds flat along {way} in {_count(len(assembly.solution.steps), 'step')}"
-    return "\n".join([title, recipe.about]) if recipe.about else title
+    way = title(assembly.solution.scaffold.direction)
+    head = f"{recipe.name}: folds flat along {way} in {_count(len(assembly.solution.steps), 'step')}"
+    return "\n".join([head, recipe.about]) if recipe.about else head
 
 
 def _changes(solution: FoldSolution) -> str:
@@ -232,7 +240,7 @@ def _figures(assembly: Assembly) -> str:
         ("scale", f"1:{1 / scale:.3g}" if scale <= 1 else f"{scale:.3g}:1"),
         ("cost", cost_and_gap(assembly.solution)),
     ]
-    return "\n".join(["What it is", *(f"  {line}" for line in _aligned(rows))])
+    return "\n".join(["What it is", *(f"  {line}" for line in aligned(rows))])
 
 
 def _printing(assembly: Assembly) -> str:
@@ -303,23 +311,8 @@ def _cells(modification: Modification) -> tuple[str, ...]:
     )
 
 
-def _aligned(rows: Iterable[Sequence[str]]) -> list[str]:
-    """Rows of cells as lines, every column but the last padded to its widest cell."""
-    cells = [tuple(row) for row in rows]
-    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in cells]
-
-
 def _size(extent: Array) -> str:
     return " × ".join(f"{side:.1f}" for side in extent) + " mm"
-
-
-def _vector(direction: Array) -> str:
-    """A folding direction as it is written in a recipe."""
-    for index, axis in enumerate("xyz"):
-        if abs(direction[index]) > 1 - 1e-12:
-            return axis if direction[index] > 0 else f"-{axis}"
-    return "[" + ", ".join(f"{entry:.3g}" for entry in direction) + "]"
 
 
 def _count(number: int, noun: str) -> str:

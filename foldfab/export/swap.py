@@ -13,17 +13,18 @@ MARK = "sheet.json"
 """What a folder must hold to be taken for a print folder, which may be replaced."""
 
 
-def replace_folder(target: Path, fill: Callable[[Path], None]) -> Path:
+def replace_folder(target: Path, fill: Callable[[Path], None], mark: str = MARK) -> Path:
     """`fill` an empty folder beside `target` and move it there; returns where it then stands.
 
-    Whatever stops it, an interruption included, leaves the old folder as it was and nothing beside it.
+    Whatever stops it, an interruption included, leaves the old folder as it was and nothing beside it. What is replaced
+    holds a file `mark`, or nothing.
 
     Raises:
-        PrintFolderError: the target is no print folder, or the disk refuses.
+        PrintFolderError: the target holds something else, or the disk refuses.
     """
     try:
         place = target.resolve()
-        _refuse_foreign(place, target)
+        _refuse_foreign(place, target, mark)
         place.parent.mkdir(parents=True, exist_ok=True)
         workshop = Path(tempfile.mkdtemp(prefix=f".{place.name}.", dir=place.parent))
         try:
@@ -39,12 +40,12 @@ def replace_folder(target: Path, fill: Callable[[Path], None]) -> Path:
     return place
 
 
-def _refuse_foreign(place: Path, target: Path) -> None:
+def _refuse_foreign(place: Path, target: Path, mark: str) -> None:
     if place.exists() and not place.is_dir():
         raise PrintFolderError(f"{target}: is a file, where a print folder should go; move it or choose another folder")
-    if place.is_dir() and any(place.iterdir()) and not (place / MARK).is_file():
+    if place.is_dir() and any(place.iterdir()) and not (place / mark).is_file():
         raise PrintFolderError(
-            f"{target}: holds files but no {MARK}, so it is not a print folder and is left alone; "
+            f"{target}: holds files but no {mark}, so it is no folder of ours and is left alone; "
             "empty it or choose another folder"
         )
     if place.name == "":

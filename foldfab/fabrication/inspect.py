@@ -16,6 +16,7 @@ import numpy as np
 from foldfab.fabrication import solids
 from foldfab.fabrication.lying import lying
 from foldfab.fabrication.model import Assembly, Finding
+from foldfab.fabrication.passing import STILL
 from foldfab.fabrication.posture import cuts_parts, needs_pins, printed_pose, printed_turn
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.turning import PAST, meets, stops_at, turn
@@ -27,8 +28,10 @@ CLASH = 0.01
 """Shared volume below this is rounding, mm³."""
 GAP_SHARE = 0.93
 """The least gap as printed, as a share of the clearance; facets take a little."""
+FRAMES = 60
+"""Equal intervals at whose ends a fold is looked at."""
 FRAMES_PER_STEP = 14
-"""Instants of each step that are looked at."""
+"""Instants of each step that are looked at besides."""
 PULL_GAPS = 4.0
 """The halves of a hinge must meet before they are pulled this many clearances (or a knuckle's radius) apart."""
 HELD = 0.02
@@ -37,8 +40,6 @@ TIGHT = 0.1
 """A clearance that always holds, as a share of the plates' thickness."""
 MOST_NAMES = 4
 """More hinges than these are counted, not listed."""
-STILL = 1e-7
-"""Relative poses that differ by less are the same."""
 
 
 def inspect(
@@ -274,7 +275,7 @@ def _pulls(along: Array) -> list[Array]:
 def instants(assembly: Assembly) -> Array:
     """(k,) the times at which a fold is looked at."""
     marks = [np.linspace(s.start, s.end, FRAMES_PER_STEP * _sections(s.travel) + 1) for s in assembly.solution.steps]
-    found: Array = np.unique(np.concatenate([np.linspace(0.0, 1.0, 31), *marks]))
+    found: Array = np.unique(np.concatenate([np.linspace(0.0, 1.0, FRAMES + 1), *marks]))
     return found
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from foldfab.fabrication.hinges import feet, knuckles
 from foldfab.fabrication.printed import printed
 from foldfab.fabrication.shapes import Shape, box, cut, hull, placed, union
-from foldfab.fabrication.solids import pieces
+from foldfab.fabrication.solids import pieces, without_crumbs
 from foldfab.fabrication.styles import style
 from foldfab.folding.anatomy import base_boxes, faces
 from foldfab.folding.mechanism import joints, tilts
@@ -53,7 +53,7 @@ def _members(base: BasePatch, thickness: Thickness) -> Boxes:
 def _one_body(outlines: Boxes, pads: list[Shape]) -> tuple[Shape, bool]:
     for growth in GROWTH:
         body = union([_slab(outlines[i : i + 1], growth) for i in range(len(outlines))] + pads)
-        if pieces(printed(body)) == 1:
+        if pieces(without_crumbs(printed(body))) == 1:
             return body, False
     return hull([_slab(outlines[i : i + 1], 0.0) for i in range(len(outlines))] + pads), True
 

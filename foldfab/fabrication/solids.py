@@ -30,6 +30,8 @@ SLIVERS = (1e-3, 3e-3, 1e-2, 2e-2, 3e-2, 5e-2)
 """Detail that may be given up, mm; the finest that leaves a sound mesh is taken."""
 FLAT = 2e-5
 """A triangle that is lower than this, mm, may have no area any more on the grid of a file, wherever it is turned."""
+CRUMB = 1e-3
+"""A shell of less than this is dust that a boolean left behind, mm³: a tenth of a millimetre each way."""
 WELD_DIGITS = 5
 """Vertices closer than this many decimals of a millimetre are one in a file."""
 
@@ -129,7 +131,7 @@ def tidied(body: Solid) -> Solid:
     """
     for whole in (body, body.as_original()):
         for detail in SLIVERS:
-            tidy = checked(whole.simplify(detail))
+            tidy = without_crumbs(checked(whole.simplify(detail)))
             if stays_closed(tidy):
                 return tidy
     return tidy
@@ -146,24 +148,39 @@ def stays_closed(body: Solid) -> bool:
     A triangle that has no height on that grid any more does not count as one.
     """
     vertices, faces = mesh(body)
-    grid = np.round(vertices, WELD_DIGITS).astype(np.float32)
-    _, index = np.unique(grid, axis=0, return_inverse=True)
-    welded = index.reshape(-1)[faces]
-    edges = np.sort(np.concatenate([welded[:, [0, 1]], welded[:, [1, 2]], welded[:, [2, 0]]]), axis=1)
-    _, counts = np.unique(edges, axis=0, return_counts=True)
+    grid: Array = np.round(vertices, WELD_DIGITS).astype(np.float32).astype(np.float64)
+    welded = _numbered(grid)[faces]
+    edges = np.concatenate([welded[:, [0, 1]], welded[:, [1, 2]], welded[:, [2, 0]]])
+    _, counts = np.unique(edges.min(axis=1) * len(grid) + edges.max(axis=1), return_counts=True)
     return bool((counts == 2).all()) and float(heights(vertices[faces]).min(initial=np.inf)) > FLAT
 
 
+def _numbered(points: Array) -> Indices:
+    """(n,) numbers of points (n, 3), the same where points are."""
+    number = np.zeros(len(points), dtype=np.int64)
+    for column in points.T:
+        _, rank = np.unique(column, return_inverse=True)
+        _, number = np.unique(number * len(points) + rank.reshape(-1), return_inverse=True)
+    return number.reshape(-1)
+
+
+def without_crumbs(body: Solid) -> Solid:
+    """The body without the specks that booleans of nearly coplanar faces leave beside it."""
+    parts = body.decompose()
+    kept = [part for part in parts if abs(part.volume()) > CRUMB]
+    return kept[0] if len(kept) == 1 and len(parts) > 1 else body
+
+
 def pieces(body: Solid) -> int:
-    """How many separate bodies it is."""
-    return sum(1 for part in body.decompose() if part.volume() > 0)
+    """How many separate shells it has: specks and voids count, as they do for whoever reads its file."""
+    return len(body.decompose())
 
 
 def parts(body: Solid) -> list[Solid]:
-    """The separate bodies that it is, by where they begin; hollows stay with theirs."""
+    """The separate bodies that it is, by where they begin: without specks, and hollows stay with theirs."""
     found = body.decompose()
-    whole = [part for part in found if part.volume() > 0]
-    if len(whole) < len(found):
+    whole = [part for part in found if part.volume() > CRUMB]
+    if any(part.volume() < -CRUMB for part in found):
         whole = [checked(part ^ body) for part in whole]
     return sorted(whole, key=lambda part: part.bounding_box())
 
@@ -171,6 +188,11 @@ def parts(body: Solid) -> list[Solid]:
 def overlap(a: Solid, b: Solid) -> float:
     """Volume that two solids share, mm³."""
     return float((a ^ b).volume())
+
+
+def within(body: Solid, low: Array, high: Array) -> Solid:
+    """What of a body lies between two corners (3,)."""
+    return checked(body ^ box(low, high))
 
 
 def gap(a: Solid, b: Solid, within: float) -> float:

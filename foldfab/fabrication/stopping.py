@@ -9,8 +9,7 @@ from foldfab.fabrication.model import Assembly, Joint, Latch
 from foldfab.fabrication.shapes import Shape
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.stops import Stop, rests, stops
-from foldfab.fabrication.trial import Trial
-from foldfab.fabrication.turning import PAST
+from foldfab.fabrication.trial import Fitted, Trial
 from foldfab.folding.model import Chain
 
 
@@ -46,8 +45,8 @@ def stopped(assembly: Assembly, made: dict[str, Solid], ramps: Mapping[str, list
             best = _best(trial, name, candidates, is_folded)
             if best is not None:
                 trial.take(best)
-                taken[name] = (*taken[name], best.kind)
-                latches |= {name: trial.latch(best)} if is_latched and best.detent else {}
+                taken[name] = (*taken[name], best.stop.kind)
+                latches |= {name: trial.latch(best.stop)} if is_latched and best.stop.detent else {}
     joints = tuple(
         replace(j, stop_deg=_angles(trial, j.name), stops=taken[j.name], latch=latches.get(j.name))
         for j in assembly.joints
@@ -68,18 +67,20 @@ def _hinges(assembly: Assembly) -> Iterator[tuple[Chain, int, str]]:
             yield chain, hinge, f"{bodies[hinge]}~{bodies[hinge + 1]}"
 
 
-def _best(trial: Trial, joint: str, candidates: Iterable[Stop], is_folded: bool) -> Stop | None:
+def _best(trial: Trial, joint: str, candidates: Iterable[Stop], is_folded: bool) -> Fitted | None:
     """The first stop that works within `PAST`, or the one that works soonest; None where none is needed or helps."""
-    now = trial.angle(joint, is_folded=is_folded)
-    if now is not None and now <= PAST:
+    if trial.is_prompt(joint, is_folded=is_folded):
         return None
-    found: list[tuple[float, Stop]] = []
+    late: list[Fitted] = []
     for stop in candidates:
-        angle = trial.better(stop)
-        if angle is not None and angle <= PAST:
-            return stop
-        found += [] if angle is None else [(angle, stop)]
-    return min(found, key=lambda f: f[0])[1] if found else None
+        fitted = trial.fitted(stop)
+        if fitted is None:
+            continue
+        if not trial.is_prompt(joint, is_folded=is_folded, fitted=fitted):
+            late.append(fitted)
+        elif trial.has_room(fitted):
+            return fitted
+    return trial.soonest(late)
 
 
 def _angles(trial: Trial, joint: str) -> tuple[float | None, float | None]:

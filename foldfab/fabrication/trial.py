@@ -1,35 +1,44 @@
 """Which stops and latches there is room for: each is tried on the solids along the whole fold before it is made.
 
 A piece is taken where its body stays one body, no gap as printed gets narrower than the clearance, nothing meets it at
-any instant, what it is let into is not another hinge's foot, and the print still fits its bed. Costs a boolean for each
-instant at which the piece is near another body.
+any time, what it is let into is not another hinge's foot, and the print still fits its bed. What costs least is asked
+first.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
 
 from foldfab.fabrication import solids
 from foldfab.fabrication.hinges import knuckles
-from foldfab.fabrication.inspect import CLASH, GAP_SHARE, STILL, instants
+from foldfab.fabrication.inspect import CLASH, GAP_SHARE, instants
 from foldfab.fabrication.latches import tried
 from foldfab.fabrication.model import Assembly, Latch
+from foldfab.fabrication.passing import Passage, seen_from
 from foldfab.fabrication.plates import ROOT_SHARE, axis_of
 from foldfab.fabrication.posture import needs_pins, printed_turn
 from foldfab.fabrication.printed import printed
 from foldfab.fabrication.shapes import cut, union
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.stops import Stop
-from foldfab.fabrication.turning import Turn, stops_at, turn
-from foldfab.fabrication.walls import thin_sides
-from foldfab.folding.kinematics import configuration
-from foldfab.geometry.arrays import Array, Bools
+from foldfab.fabrication.turning import PAST, meets, stops_at, turn
+from foldfab.fabrication.walls import LINE, thin_sides
+from foldfab.geometry.arrays import Array
 
 ROUNDING = 0.01
 """By how much a print may seem to grow, mm."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Fitted:
+    """A stop with the two bodies that it changes."""
+
+    stop: Stop
+    changed: dict[str, Solid]
 
 
 class Trial:
@@ -40,8 +49,9 @@ class Trial:
     ) -> None:
         """`ramps` is what will be cut from bodies once they have their stops."""
         self.assembly, self.made, self.shapes = assembly, made, dict(assembly.shapes)
-        self.poses = configuration(assembly.solution, instants(assembly))
-        self._bounds = {name: self._along(name, solid) for name, solid in made.items()}
+        self._plain = made
+        self._passage = Passage(assembly.solution, instants(assembly))
+        self.poses = self._passage.poses
         self._is_open = assembly.posture in ("open", "plate")
         self._turn = printed_turn(assembly)
         corners = [self._printed(name, solid) for name, solid in made.items()]
@@ -49,41 +59,62 @@ class Trial:
         self._feet = list(_feet(assembly))
         self.turns = {j.name: turn(j, *(self.poses[p] for p in j.parts)) for j in assembly.joints}
         self._ramps = ramps
-        self._thin = {name: self._thin_sides(name, solid) for name, solid in made.items()}
         self.gives: dict[str, list[Solid]] = {}
         """By panel, what of it gives way while it passes its latches."""
         self._parts = {j.name: j.parts for j in assembly.joints}
 
     def angle(self, joint: str, *, is_folded: bool) -> float | None:
         """How far past an end of its range a hinge turns as it stands, degrees."""
-        return self._angle(joint, self.made, is_folded)
+        return stops_at(self.turns[joint], *self._halves(joint), is_folded=is_folded)
 
-    def better(self, stop: Stop) -> float | None:
-        """The angle at which a stop would work, where there is room for it and it does better than what is there."""
-        made = self._with(stop)
-        if made is None:
+    def is_prompt(self, joint: str, *, is_folded: bool, fitted: Fitted | None = None) -> bool:
+        """Whether a hinge stops within `PAST` of an end of its range, as it stands or with a stop."""
+        first, second = self._halves(joint, fitted)
+        return meets(self.turns[joint], first, second, PAST, is_folded=is_folded)
+
+    def fitted(self, stop: Stop) -> Fitted | None:
+        """The bodies with a stop; None where a body would fall apart, or a third one or the bed is in its way."""
+        if not self._fits(stop) or (stop.cut is not None and self._is_taken(stop)):
             return None
-        before = self.angle(stop.joint, is_folded=stop.is_folded)
-        after = self._angle(stop.joint, made, stop.is_folded)
-        if after is None or (before is not None and after >= before) or not self._has_room(stop, made):
+        others = [name for name in self.made if name not in (stop.body, stop.other)]
+        if not self._is_clear(stop, {name: self.made[name] for name in others}):
             return None
+        changed = self._with(stop)
+        return None if changed is None else Fitted(stop, changed)
+
+    def has_room(self, fitted: Fitted) -> bool:
+        """Whether a stop stays apart from what it stops against along the whole fold, and leaves no thin wall."""
+        stop, changed = fitted.stop, fitted.changed
+        if not self._is_clear(stop, {stop.other: changed[stop.other]}):
+            return False
         # What lies between two holes may be too thin to be printed.
-        return None if any(self._thin_sides(n, made[n]) > self._thin[n] for n in (stop.body, stop.other)) else after
+        near = _around([printed(shape) for shape in (stop.added, stop.cut) if shape is not None])
+        return all(
+            self._thin_sides(name, solid, near) <= self._thin_sides(name, self._plain[name], near)
+            for name, solid in changed.items()
+        )
 
-    def _thin_sides(self, name: str, solid: Solid) -> int:
-        return thin_sides(solids.cut(solid, self._ramps.get(name, [])))
+    def soonest(self, late: Sequence[Fitted]) -> Fitted | None:
+        """Of stops that work beyond `PAST`, the one that works first and has room; None where none does better."""
+        if not late:
+            return None
+        joint, is_folded = late[0].stop.joint, late[0].stop.is_folded
+        before = self.angle(joint, is_folded=is_folded)
+        angles = [stops_at(self.turns[joint], *self._halves(joint, one), is_folded=is_folded) for one in late]
+        better = [
+            (angle, n) for n, angle in enumerate(angles) if angle is not None and (before is None or angle < before)
+        ]
+        return next((late[n] for _, n in sorted(better) if self.has_room(late[n])), None)
 
-    def take(self, stop: Stop) -> None:
+    def take(self, fitted: Fitted) -> None:
         """Makes a stop."""
-        made = self._with(stop)
-        assert made is not None
-        self.made = made
+        stop = fitted.stop
+        self.made = {**self.made, **fitted.changed}
         self.shapes[stop.body] = union([self.shapes[stop.body], stop.added])
         if stop.cut is not None:
             self.shapes[stop.other] = cut(self.shapes[stop.other], [stop.cut])
-        for name in (stop.body, stop.other):
-            self._bounds[name] = self._along(name, made[name])
-            low, high = self._printed(name, made[name])
+        for name, solid in fitted.changed.items():
+            low, high = self._printed(name, solid)
             self._extent = np.minimum(low, self._extent[0]), np.maximum(high, self._extent[1])
 
     def latch(self, stop: Stop) -> Latch | None:
@@ -103,28 +134,26 @@ class Trial:
             self.gives.setdefault(stop.body, []).append(printed(stop.detent.pressed))
         return found
 
-    def _angle(self, joint: str, made: dict[str, Solid], is_folded: bool) -> float | None:
+    def _halves(self, joint: str, fitted: Fitted | None = None) -> tuple[Solid, Solid]:
+        made = self.made if fitted is None else {**self.made, **fitted.changed}
         first, second = self._parts[joint]
-        range_: Turn = self.turns[joint]
-        return stops_at(range_, made[first], made[second], is_folded=is_folded)
+        return made[first], made[second]
 
     def _with(self, stop: Stop) -> dict[str, Solid] | None:
-        """The bodies with a stop; None where one of them would fall apart."""
-        made = {**self.made, stop.body: solids.tidied(solids.union([self.made[stop.body], printed(stop.added)]))}
-        if stop.cut is not None:
-            made[stop.other] = solids.tidied(solids.cut(made[stop.other], [printed(stop.cut)]))
-        changed = [made[name] for name in (stop.body, stop.other)]
-        return made if all(solids.pieces(s) == 1 and solids.stays_closed(s) for s in changed) else None
+        """The two bodies with a stop; None where one of them would fall apart."""
+        body = solids.union([self.made[stop.body], printed(stop.added)])
+        other = self.made[stop.other]
+        other = other if stop.cut is None else solids.cut(other, [printed(stop.cut)])
+        changed = {name: solids.tidied(solid) for name, solid in ((stop.body, body), (stop.other, other))}
+        return changed if all(solids.pieces(s) == 1 and solids.stays_closed(s) for s in changed.values()) else None
 
-    def _has_room(self, stop: Stop, made: dict[str, Solid]) -> bool:
-        if stop.cut is not None and self._is_taken(stop):
-            return False
-        if not self._fits(stop):
-            return False
+    def _thin_sides(self, name: str, solid: Solid, near: tuple[Array, Array]) -> int:
+        return thin_sides(solids.cut(solid, self._ramps.get(name, [])), near)
+
+    def _is_clear(self, stop: Stop, others: Mapping[str, Solid]) -> bool:
+        """Whether nothing meets the material of a stop along the whole fold."""
         added = printed(stop.added)
-        reach = self._along(stop.body, added)
-        others = [name for name in made if name != stop.body]
-        return all(self._is_apart(stop.body, added, name, made[name], reach) for name in others)
+        return all(self._is_apart(stop.body, added, name, solid) for name, solid in others.items())
 
     def _is_taken(self, stop: Stop) -> bool:
         """Whether what is cut away is, or holds, something else."""
@@ -136,12 +165,7 @@ class Trial:
             is_own = bool({*mine} & {*chain_panels}) and base in mine
             if base == stop.other and not is_own and bool((low < foot_high).all() and (foot_low < high).all()):
                 return True
-        for name, solid in self.made.items():
-            if name in mine or not _near(self._bounds[name], (low[None], high[None]), 0.0)[0]:
-                continue
-            if solids.overlap(hole, solid) > CLASH:
-                return True
-        return False
+        return any(name not in mine and solids.overlap(hole, solid) > CLASH for name, solid in self.made.items())
 
     def _fits(self, stop: Stop) -> bool:
         """Whether the print, which may fit its bed just so, still fits it."""
@@ -159,42 +183,20 @@ class Trial:
         points = (solids.mesh(solid)[0] @ pose[:3, :3].T + pose[:3, 3]) @ self._turn.T
         return points.min(0), points.max(0)
 
-    def _is_apart(self, body: str, added: Solid, name: str, other: Solid, reach: tuple[Array, Array]) -> bool:
+    def _is_apart(self, body: str, added: Solid, name: str, other: Solid) -> bool:
         """Whether a piece of a body stays apart from another body all along the fold."""
         clearance = self.assembly.solution.thickness.gap
         key = 0 if self._is_open else -1
-        near = _near(reach, self._bounds[name], clearance)
-        if near[key]:
-            piece = solids.moved(added, self._relative(name, body, key))
-            if solids.gap(piece, other, clearance) < GAP_SHARE * clearance:
-                return False
-        last: Array | None = None
-        for k in np.nonzero(near)[0]:
-            relative = self._relative(name, body, int(k))
-            if last is not None and np.abs(last - relative).max() < STILL:
-                continue
-            last = relative
-            if solids.overlap(other, solids.moved(added, relative)) > CLASH / 2:
-                return False
-        return True
-
-    def _relative(self, name: str, body: str, key: int) -> Array:
-        pose: Array = np.linalg.inv(self.poses[name][key]) @ self.poses[body][key]
-        return pose
-
-    def _along(self, name: str, solid: Solid) -> tuple[Array, Array]:
-        """Lower and upper corners (k, 3) of a piece of a body all along the fold."""
-        low, high = solids.bounds(solid)
-        pose = self.poses[name]
-        center = pose[:, :3, :3] @ ((low + high) / 2) + pose[:, :3, 3]
-        half = np.abs(pose[:, :3, :3]) @ ((high - low) / 2)
-        return center - half, center + half
+        piece = solids.moved(added, seen_from(self.poses[name][key], self.poses[body][key]))
+        if solids.gap(piece, other, clearance) < GAP_SHARE * clearance:
+            return False
+        return not self._passage.meets(body, added, name, other, above=CLASH / 2)
 
 
-def _near(a: tuple[Array, Array], b: tuple[Array, Array], gap: float) -> Bools:
-    near = (a[0] <= b[1] + gap) & (b[0] <= a[1] + gap)
-    found: Bools = np.all(near, axis=1)
-    return found
+def _around(pieces: list[Solid]) -> tuple[Array, Array]:
+    """The box around pieces, and the walls beside them."""
+    corners = [solids.bounds(piece) for piece in pieces]
+    return np.min([c[0] for c in corners], axis=0) - LINE, np.max([c[1] for c in corners], axis=0) + LINE
 
 
 def _feet(assembly: Assembly) -> Iterator[tuple[str, tuple[str, ...], Array, Array]]:

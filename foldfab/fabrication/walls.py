@@ -20,9 +20,17 @@ SHARES = np.array([[1 / 3, 1 / 3, 1 / 3], [0.8, 0.1, 0.1], [0.1, 0.8, 0.1], [0.1
 """Where in a facet, in shares of its corners, the wall is measured."""
 
 
-def thin_sides(body: Solid) -> int:
-    """How many facets of a body are sides of walls that are thinner than a line."""
-    return thinnest(*mesh(body), body, LINE)[1]
+def thin_sides(body: Solid, near: tuple[Array, Array] | None = None) -> int:
+    """How many facets of a body are sides of walls that are thinner than a line; of those that reach into a box alone.
+
+    `near` is the box, two corners (3,), mm.
+    """
+    vertices, faces = mesh(body)
+    if near is not None:
+        corners = vertices[faces]
+        low, high = corners.min(axis=1), corners.max(axis=1)
+        faces = faces[np.all((low <= near[1]) & (near[0] <= high), axis=1)]
+    return thinnest(vertices, faces, body, LINE)[1]
 
 
 def thinnest(vertices: Array, faces: Indices, body: Solid, limit: float) -> tuple[float, int]:
@@ -41,7 +49,7 @@ def thinnest(vertices: Array, faces: Indices, body: Solid, limit: float) -> tupl
         is_seen = is_large | (number == 0)
         points = np.einsum("j,ijk->ik", shares, corners[is_seen])
         thickness[is_seen] = np.minimum(thickness[is_seen], _thickness(body, points, inward[is_seen], limit))
-    return float(thickness.min()), int(np.sum(thickness < limit))
+    return float(thickness.min(initial=limit)), int(np.sum(thickness < limit))
 
 
 def _thickness(body: Solid, points: Array, inward: Array, limit: float) -> Array:

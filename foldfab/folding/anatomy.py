@@ -51,8 +51,7 @@ def moving_boxes(chain: Chain, thickness: Thickness, progress: Array) -> Boxes:
     """Slabs and knuckles (k, 2 m - 1) of a chain at each progress (k,), relative to the anchor's open position."""
     spans = tuple(map(tuple, np.vstack([chain.span, chain.hinge_spans[1:-1]]).tolist()))
     made = _moving(chain.shape, chain.panel, thickness.gap, spans, np.asarray(progress, dtype=np.float64).tobytes())
-    basis = np.stack([chain.across, chain.along, chain.rise])
-    return Boxes(chain.root + made.center @ basis, made.axes @ basis, made.half)
+    return Boxes(chain.root + made.center @ chain.basis, made.axes @ chain.basis, made.half)
 
 
 @lru_cache(REMEMBERED)
@@ -64,13 +63,13 @@ def _moving(shape: Shape, panel: float, gap: float, spans: tuple[tuple[float, fl
     angles = tilts(shape, np.frombuffer(progress))
     axes_flat = joints(shape, angles)
     count = len(shape.lengths)
-    sin, cos = sine(angles), cosine(angles)
     axes = np.zeros((*angles.shape, 3, 3))
-    axes[..., 0, 0], axes[..., 0, 2] = cos, -sin
+    axes[..., 0, 0] = axes[..., 2, 2] = cosine(angles)
     axes[..., 1, 1] = 1.0
-    axes[..., 2, 0], axes[..., 2, 2] = sin, cos
-    low = np.where(np.arange(count) == 0, 0.0, gap / 2)
-    high = np.array(shape.lengths) - np.where(np.arange(count) == count - 1, 0.0, gap / 2)
+    axes[..., 2, 0] = sine(angles)
+    axes[..., 0, 2] = -axes[..., 2, 0]
+    low, high = np.full(count, gap / 2), np.array(shape.lengths) - gap / 2
+    low[0], high[-1] = 0.0, shape.lengths[-1]
     span = np.array(spans)
     middle, reach = span.mean(axis=1), (span[:, 1] - span[:, 0]) / 2
     center = np.zeros((*angles.shape, 3))
@@ -103,11 +102,15 @@ def swept_boxes(chain: Chain, thickness: Thickness, progress: Array, near: Array
     feet = [(anchor_feet(chain, thickness), near)]
     if far is not None:
         feet.append((far_feet(chain, thickness), far))
-    center = [panels.center + near[:, None], *(boxes.center + shift[:, None] for boxes, shift in feet)]
-    shape = (len(progress), 1)
-    axes = [panels.axes, *(np.broadcast_to(boxes.axes, (*shape, 3, 3)) for boxes, _ in feet)]
-    half = [panels.half, *(np.broadcast_to(boxes.half, (*shape, 3)) for boxes, _ in feet)]
-    return Boxes(*(np.concatenate(parts, axis=1) for parts in (center, axes, half)))
+    count = panels.center.shape[1]
+    shape = (len(progress), count + len(feet))
+    found = Boxes(np.empty((*shape, 3)), np.empty((*shape, 3, 3)), np.empty((*shape, 3)))
+    found.center[:, :count] = panels.center + near[:, None]
+    found.axes[:, :count], found.half[:, :count] = panels.axes, panels.half
+    for i, (foot, shift) in enumerate(feet, count):
+        found.center[:, i] = foot.center + shift
+        found.axes[:, i], found.half[:, i] = foot.axes, foot.half
+    return found
 
 
 def anchor_feet(chain: Chain, thickness: Thickness) -> Boxes:
@@ -127,6 +130,7 @@ def _foot(chain: Chain, thickness: Thickness, axis: Array, outward: Array, pad: 
     """From the base face, which lies below the axis seen along `outward`, to the far side of the knuckle."""
     thickness, span = thickness.of(chain.panel), chain.span if pad > 0 else hinge
     low, high = -thickness.axis_height - pad, thickness.panel / 2
-    center = axis + outward * (low + high) / 2 + chain.along * float(span.mean())
-    half = np.array([[thickness.panel / 2, float(np.ptp(span)) / 2, (high - low) / 2]])
-    return Boxes(center[None], np.stack([chain.across, chain.along, chain.rise])[None], half)
+    start, end = span.tolist()
+    center = axis + outward * ((low + high) / 2) + chain.along * ((start + end) / 2)
+    half = np.array([[thickness.panel / 2, (end - start) / 2, (high - low) / 2]])
+    return Boxes(center[None], chain.basis[None], half)

@@ -7,6 +7,7 @@ Costs are eq. 3, weighted by the importance λ of eq. 1.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -76,7 +77,7 @@ def window_span(site: Site, window: tuple[int, int], steps: int, thickness: Thic
     A whole patch narrower than a hinge is widened to it. Two windows that meet at a cut are the gap apart.
     """
     thickness = thickness.of(site.panel)
-    low, high = (float(edge[0]) for edge in _extents(site, (window,), steps, thickness))
+    low, high = _extent(site, window, steps, thickness)
     if high - low >= thickness.hinge_width:
         return np.array([low, high])
     if window != (0, steps):
@@ -87,9 +88,8 @@ def window_span(site: Site, window: tuple[int, int], steps: int, thickness: Thic
 
 def too_narrow(site: Site, many: tuple[tuple[int, int], ...], steps: int, thickness: Thickness) -> Bools:
     """Which windows (n,) are too narrow for a hinge; the whole patch never is."""
-    low, high = _extents(site, many, steps, thickness)
-    found: Bools = (high - low < thickness.of(site.panel).hinge_width) & np.array([w != (0, steps) for w in many])
-    return found
+    least, edges = thickness.of(site.panel).hinge_width, [_extent(site, w, steps, thickness) for w in many]
+    return np.array([high - low < least and w != (0, steps) for w, (low, high) in zip(many, edges, strict=True)])
 
 
 def chain(site: Site, variant: Variant, span: Array, thickness: Thickness) -> Chain | None:
@@ -102,7 +102,7 @@ def chain(site: Site, variant: Variant, span: Array, thickness: Thickness) -> Ch
     signs = -np.sign(turn) * np.where(np.arange(variant.hinges) % 2 == 0, 1.0, -1.0)
     offsets = np.concatenate([[0.0], signs * thickness.axis_offset, [0.0]])
     rise = thickness.axis_height + variant.pads[0]
-    root = site.foot + rise * (site.rise + np.tan(site.lean) * site.across)
+    root = site.foot + rise * (site.rise + math.tan(site.lean) * site.across)
     ends = [_on(span, held, thickness) for held in site.held]
     hinge_spans = np.array([ends[0], *([span] * variant.hinges), ends[1]])
     return Chain(
@@ -121,12 +121,12 @@ def modification(site: Site, option: Option, options: FoldOptions, reason: str) 
     return Modification(name, v.mechanism, v.hinges, v.side, kept, site.importance, option.cost, reason)
 
 
-def _extents(site: Site, many: tuple[tuple[int, int], ...], steps: int, thickness: Thickness) -> tuple[Array, Array]:
-    """Lower and upper ends (n,) of windows along the hinge direction, half a gap short of every cut."""
-    window = np.array(many)
-    cuts = site.patch.width * (window / steps - 0.5)
-    cuts += thickness.gap / 2 * np.stack([window[:, 0] > 0, -1.0 * (window[:, 1] < steps)], axis=1)
-    return np.maximum(cuts[:, 0], site.span[0]), np.minimum(cuts[:, 1], site.span[1])
+def _extent(site: Site, window: tuple[int, int], steps: int, thickness: Thickness) -> tuple[float, float]:
+    """Lower and upper end of a window along the hinge direction, half a gap short of every cut."""
+    (low, high), (a, b) = site.span.tolist(), window
+    start = site.patch.width * (a / steps - 0.5) + (thickness.gap / 2 if a > 0 else 0.0)
+    end = site.patch.width * (b / steps - 0.5) - (thickness.gap / 2 if b < steps else 0.0)
+    return max(start, low), min(end, high)
 
 
 def _lengths(site: Site, variant: Variant, thickness: Thickness) -> Array | None:
@@ -135,20 +135,22 @@ def _lengths(site: Site, variant: Variant, thickness: Thickness) -> Array | None
         return None
     taken = thickness.axis_height + variant.pads[0]
     taken += thickness.axis_height + variant.pads[1] if site.far is not None else 0.0
-    total = (site.clear - taken) / np.cos(site.lean)
+    total = (site.clear - taken) / math.cos(site.lean)
     count, ends_free = variant.hinges + 1, site.far is None
-    shift = 0.0 if ends_free or variant.mechanism == "slanted" else total * abs(np.sin(site.lean))
-    lengths = np.full(count, (total - shift) / count)
+    shift = 0.0 if ends_free or variant.mechanism == "slanted" else total * abs(math.sin(site.lean))
+    lengths = [(total - shift) / count] * count
     folds_with_lean = (variant.side == "r") == (site.lean > 0)
     lengths[0 if folds_with_lean else -1] += shift
-    least = [thickness.least_length(is_first=i == 0, is_last=i == count - 1, ends_free=ends_free) for i in range(count)]
-    return None if total <= 0 or (lengths < least).any() else lengths
+    least = (thickness.least_length(is_first=i == 0, is_last=i == count - 1, ends_free=ends_free) for i in range(count))
+    is_short = total <= 0 or any(length < needed for length, needed in zip(lengths, least, strict=True))
+    return None if is_short else np.array(lengths)
 
 
 def _on(span: Array, held: tuple[float, float], thickness: Thickness) -> Array:
     """The part of a span that lies over its base, at least as wide as a hinge and within the span."""
-    low, high = max(float(span[0]), held[0]), min(float(span[1]), held[1])
-    if high - low >= thickness.hinge_width:
+    start, end = span.tolist()
+    low, high, half = max(start, held[0]), min(end, held[1]), thickness.hinge_width / 2
+    if high - low >= 2 * half:
         return np.array([low, high])
-    middle = np.clip((low + high) / 2, span[0] + thickness.hinge_width / 2, span[1] - thickness.hinge_width / 2)
-    return np.array([middle - thickness.hinge_width / 2, middle + thickness.hinge_width / 2])
+    middle = min(max((low + high) / 2, start + half), end - half)
+    return np.array([middle - half, middle + half])

@@ -52,6 +52,8 @@ def cheapest(
         forbidden: combinations of (group, option) that must not all be taken together.
         gaps: gets by how much the choice may be dearer than the cheapest one, where the work did not suffice to tell.
     """
+    if not conflicts and not forbidden:
+        return tuple(int(np.argmin(c)) for c in costs) if all(np.isfinite(c.min()) for c in costs) else None
     table = _by_group(len(costs), conflicts)
     held = _held(len(costs), forbidden)
     alive = [_undominated(costs[g], table[g], held[g]) for g in range(len(costs))]
@@ -102,12 +104,19 @@ def _undominated(price: Array, conflicts: Mapping[int, Bools], held: list[int]) 
         # The cheapest option of all excludes nothing: it dominates every other one.
         alive[rest[1:]] = False
         return alive
-    columns = excludes[:, excludes.any(0)].astype(np.float32)
-    more = columns @ (1 - columns).T > 0
-    is_first = np.triu(np.ones((len(rest), len(rest)), dtype=bool), 1)
-    dominates = ~more & is_first & free[rest][:, None]
-    alive[rest[dominates.any(0)]] = False
+    alive[rest[_dominated(excludes, free[rest])]] = False
     return alive
+
+
+def _dominated(excludes: Bools, free: Bools) -> Bools:
+    """Which options (n,), cheapest first, one before them dominates: it is free, and excludes (n, m) no more."""
+    bits = np.packbits(excludes, axis=1)
+    found = np.zeros(len(bits), dtype=bool)
+    for i in np.nonzero(free)[0].tolist():
+        # What is dominated dominates nothing that its own dominator does not.
+        if not found[i]:
+            found[i + 1 :] |= ~(bits[i] & ~bits[i + 1 :]).any(1)
+    return found
 
 
 def _islands(alive: list[Bools], table: Table, forbidden: frozenset[Combination]) -> list[list[int]]:

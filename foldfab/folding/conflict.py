@@ -165,7 +165,7 @@ def _table(
     own: Repertoire, first: tuple[Lane, ...], second: tuple[Lane, ...], inside: Array, *, in_modes: bool
 ) -> Bools:
     steps, count = inside.shape[1], len(inside)
-    met = np.zeros((len(first), steps, len(second), steps), dtype=np.float32)
+    met = np.zeros((len(first), steps, len(second), steps), dtype=bool)
     never = np.zeros((len(first), len(second)), dtype=bool)
     for i, a in enumerate(first):
         for j, b in enumerate(second):
@@ -173,17 +173,23 @@ def _table(
                 for q in {b.number, own.plain_of.get(b.number, b.number)}:
                     pieces = own.pieces.get((min(p, q), max(p, q)))
                     if pieces is not None:
-                        met[i, :, j] += pieces if p < q else pieces.T
+                        met[i, :, j] |= pieces if p < q else pieces.T
             never[i, j] = not (in_modes or drag_alike(a, b)) or not snap_alike(a, b)
-    return _of_windows(met.astype(np.float64), never, inside, count)
+    return _of_windows(met, never, inside, count)
 
 
-def _of_windows(met: Array, never: Bools, inside: Array, count: int) -> Bools:
+def _of_windows(met: Bools, never: Bools, inside: Array, count: int) -> Bools:
     """Which options conflict: those whose pieces meet (n, N_s, m, N_s), and lanes that never go together (n, m)."""
     shape = (met.shape[0] * count + 1, met.shape[2] * count + 1)
     found = np.zeros(shape, dtype=bool)
     if met.any() or never.any():
-        held = (np.tensordot(inside, met, axes=(1, 1)) @ inside.T).transpose(1, 0, 2, 3) > 0.5
+        # How many pieces meet up to every two cuts tells how many do within any two windows.
+        total = np.zeros((met.shape[0], met.shape[1] + 1, met.shape[2], met.shape[3] + 1), dtype=np.int64)
+        total[:, 1:, :, 1:] = met.cumsum(1).cumsum(3)
+        first = inside.argmax(1)
+        last = first + np.count_nonzero(inside, axis=1)
+        rows = total[:, last] - total[:, first]
+        held = rows[..., last] > rows[..., first]
         held |= never[:, None, :, None]
         found[:-1, :-1] = held.reshape(shape[0] - 1, shape[1] - 1)
     return found

@@ -40,22 +40,27 @@ class Graph:
         options = options_of(problem, found, offset)
         self.options = [options[p] for p in self.patches]
         self.costs: list[Array] = [o.weight.copy() for o in self.options]
-        compare(problem, own, (x for many in found.lanes.values() for x in many))
-        inside = windows_table(self.options[0].windows, problem.options.shrink_steps)
-        place = {p: g for g, p in enumerate(self.patches)}
         self.tables: dict[tuple[int, int], Bools] = {}
         in_modes = len(self.patches) > MANY and any(x.drag is not None for x in own.lanes)
         self.modes: list[list[Bools]] = self._modes(modes(own, found.lanes)) if in_modes else []
-        for a, b in neighbours(own, found.lanes, in_modes=in_modes):
-            made = table(problem, own, found.lanes[a], found.lanes[b], inside, in_modes=in_modes)
-            if made is not None:
-                self.tables[place[a], place[b]] = made
+        if len(self.patches) > 1:
+            self._compare(problem, own, found, in_modes=in_modes)
         self._treat_alike(problem, chosen or {})
         self.forbidden: set[Combination] = set()
         self.gaps: list[float] = []
         self.learned: list[Lesson] = []
         for clash, places in learned:
             self.learn(tuple(o.index(place) for o, place in zip(self.options, places, strict=True)), clash)
+
+    def _compare(self, problem: Problem, own: Repertoire, found: Prospects, *, in_modes: bool) -> None:
+        """Finds the options of different patches that exclude each other."""
+        compare(problem, own, (x for many in found.lanes.values() for x in many))
+        inside = windows_table(self.options[0].windows, problem.options.shrink_steps)
+        place = {p: g for g, p in enumerate(self.patches)}
+        for a, b in neighbours(own, found.lanes, in_modes=in_modes):
+            made = table(problem, own, found.lanes[a], found.lanes[b], inside, in_modes=in_modes)
+            if made is not None:
+                self.tables[place[a], place[b]] = made
 
     def _treat_alike(self, problem: Problem, chosen: Mapping[str, Option]) -> None:
         """Rules out what differs between a patch and its mirror image, in this unit or in one that is folded."""

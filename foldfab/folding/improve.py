@@ -13,7 +13,7 @@ from dataclasses import replace
 from foldfab.folding.basic import Variant
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.ordering import Ordered, after, floors, greedy
-from foldfab.folding.problem import Problem
+from foldfab.folding.problem import Problem, without
 from foldfab.folding.prospects import in_the_way
 from foldfab.folding.scene import Scene, open_scene
 from foldfab.folding.surroundings import look
@@ -68,7 +68,7 @@ def _blamed(
 
 def _under(problem: Problem, banned: frozenset[tuple[str, Variant]]) -> Ordered | None:
     """The greedy order without some variants, or None where there is none."""
-    other = replace(problem, banned=banned, repertoires={}, poses={}, solved={}, hopeless={})
+    other = without(problem, banned)
     if any(not repertoire(other, other.unit_of[patch]).plain[patch] for patch, _ in banned):
         return None
     found = greedy(other, open_scene(other), floors(other))

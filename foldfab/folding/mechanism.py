@@ -43,9 +43,10 @@ def joints(chain: Chain | Shape, angles: Array) -> Array:
     """Hinge axes (k, m + 1, 2) in the plane of the chain relative to the root, for tilts (k, m); a tip last."""
     normal, length = _directions(angles)
     offsets, lengths = np.asarray(chain.offsets), np.asarray(chain.lengths)
+    found = np.zeros((len(angles), len(lengths) + 1, 2))
     steps = (offsets[1:] - offsets[:-1])[:, None] * normal + lengths[:, None] * length
-    start = np.zeros((len(angles), 1, 2))
-    return np.concatenate([start, np.cumsum(steps, axis=1)], axis=1)
+    np.cumsum(steps, axis=1, out=found[:, 1:])
+    return found
 
 
 def reach(chain: Chain | Shape, progress: Array) -> Array:
@@ -64,7 +65,7 @@ def frames(chain: Chain, progress: Array) -> tuple[Array, Array]:
     angles = tilts(chain, progress)
     normal, length = _directions(angles)
     flat = joints(chain, angles)[:, :-1] - chain.offsets[:-1, None] * normal
-    plane = np.stack([chain.across, chain.rise])
+    plane = chain.plane
     along = np.broadcast_to(chain.along, (*angles.shape, 3))
     return chain.root + flat @ plane, np.stack([normal @ plane, along, length @ plane], axis=2)
 
@@ -93,13 +94,13 @@ def turn(chain: Chain) -> float | None:
 def ends(chain: Chain) -> Array:
     """(3,) how far the last axis comes from open to folded, mm."""
     first, last = _ends(chain.shape)
-    way: Array = (last - first) @ np.stack([chain.across, chain.rise])
+    way: Array = (last - first) @ chain.plane
     return way
 
 
 def start(chain: Chain) -> Array:
     """(3,) where the last axis stands open, from the root, mm."""
-    place: Array = _ends(chain.shape)[0] @ np.stack([chain.across, chain.rise])
+    place: Array = _ends(chain.shape)[0] @ chain.plane
     return place
 
 
@@ -133,8 +134,11 @@ def _peak(shape: Shape) -> tuple[float, float]:
 
 
 def _directions(angles: Array) -> tuple[Array, Array]:
-    sin, cos = sine(angles), cosine(angles)
-    return np.stack([cos, -sin], axis=-1), np.stack([sin, cos], axis=-1)
+    normal, length = np.empty((*angles.shape, 2)), np.empty((*angles.shape, 2))
+    normal[..., 0] = length[..., 1] = cosine(angles)
+    length[..., 0] = sine(angles)
+    normal[..., 1] = -length[..., 0]
+    return normal, length
 
 
 def _in_place(shape: Shape, s: Array) -> Array:

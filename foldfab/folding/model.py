@@ -180,10 +180,16 @@ class Chain:
     """Stretches along `along` relative to `root` that its hinges leave free of knuckles, mm, in ascending order."""
     shape: Shape = field(init=False)
     """What its motion depends on."""
+    basis: Array = field(init=False)
+    """(3, 3) rows across, along and rise."""
+    plane: Array = field(init=False)
+    """(2, 3) rows across and rise, in whose plane it moves."""
 
     def __post_init__(self) -> None:
-        for name, shape in (("root", (3,)), ("across", (3,)), ("along", (3,)), ("rise", (3,))):
-            object.__setattr__(self, name, frozen(getattr(self, name), *shape))
+        for name in ("root", "across", "along", "rise"):
+            object.__setattr__(self, name, frozen(getattr(self, name), 3))
+        object.__setattr__(self, "basis", frozen([self.across, self.along, self.rise], 3, 3))
+        object.__setattr__(self, "plane", self.basis[::2])
         object.__setattr__(self, "lengths", frozen(self.lengths, -1))
         object.__setattr__(self, "offsets", frozen(self.offsets, len(self.lengths) + 1))
         object.__setattr__(self, "span", frozen(self.span, 2))

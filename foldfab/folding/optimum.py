@@ -31,7 +31,7 @@ NO_MORE = 1e-5
 """What preferences between options of equal cost may add up to."""
 PLAYING = 3e-3
 """Charge for a patch that is played through, s."""
-BUILDING = 2e-2
+BUILDING = 5e-2
 """Charge for a constraint program that is built, s."""
 SHARE = 0.5
 """Share of the remaining work that one proposal may take."""

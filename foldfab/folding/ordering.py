@@ -70,6 +70,8 @@ class _State:
     """By remaining unit, those whose folding may change that."""
     seen_by: dict[str, set[str]] = field(default_factory=dict)
     """The same the other way round."""
+    ahead: dict[UnitFold, Scene] = field(default_factory=dict)
+    """The scenes that the look-ahead of this step has made, by the fold that leads to them."""
 
 
 def floors(problem: Problem) -> dict[str, Choice]:
@@ -91,7 +93,8 @@ def greedy(problem: Problem, scene: Scene, floor: Mapping[str, Choice]) -> Order
         if best is None:
             continue
         folds.append(best)
-        state.scene = after(problem, state.scene, best)
+        state.scene = _then(state, best)
+        state.ahead.clear()
         del state.rest[name]
         for other in sorted(state.seen_by.get(name, ())):
             if other in state.rest:
@@ -220,14 +223,20 @@ def _hopes(state: _State) -> list[tuple[float, str]]:
 
 def _change(state: _State, fold: UnitFold) -> float:
     """By how much the others' costs change where this unit folds now."""
-    then = after(state.problem, state.scene, fold)
     total = 0.0
     for name in sorted(state.seen_by.get(fold.unit.name, ())):
         if name in state.rest and name != fold.unit.name:
-            unit = state.rest[name]
+            unit, then = state.rest[name], _then(state, fold)
             around = look(state.problem, then, repertoire(state.problem, unit))
             total += _guessed(state, then, unit, around) - state.guess[name]
     return total
+
+
+def _then(state: _State, fold: UnitFold) -> Scene:
+    """The scene once this unit has folded now."""
+    if fold not in state.ahead:
+        state.ahead[fold] = after(state.problem, state.scene, fold)
+    return state.ahead[fold]
 
 
 def _merged(state: _State, folds: list[UnitFold]) -> Ordered:

@@ -102,7 +102,7 @@ def slanted(bases: tuple[str, ...], chains: tuple[Chain, ...]) -> Motion:
     s = np.linspace(0.0, 1.0, SAMPLES + 1)
     lead = chains[0]
     way = reach(lead, s)
-    way = (way - way[0]) @ np.stack([lead.across, lead.rise])
+    way = (way - way[0]) @ lead.plane
     shift = {base: (way if base == lead.far else np.zeros_like(way)) for base in bases}
     path = float(lead.lengths.sum()) * np.pi / 2
     return Motion(s, shift, {c.patch: s for c in chains}, {c.patch: np.zeros_like(s) for c in chains}, path)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -52,6 +52,8 @@ class Problem:
     """The first unit of each kind, by what it looks like wherever it stands."""
     solved: dict[object, Any] = field(default_factory=dict)
     """Solutions of units, by all that they depend on."""
+    begun: dict[object, Any] = field(default_factory=dict)
+    """Conflict graphs of units that were estimated but not folded yet, by all that they depend on."""
     hopeless: dict[Unit, str] = field(default_factory=dict)
     """Units that cannot fold wherever they stand, and why."""
     plays: list[int] = field(default_factory=list)
@@ -65,6 +67,11 @@ class Problem:
         if key not in self.extents:
             self.extents[key] = extent(self.furniture, direction)
         return self.extents[key]
+
+
+def without(problem: Problem, banned: frozenset[tuple[str, Variant]]) -> Problem:
+    """The problem with these variants banned, and nothing remembered that they could have been part of."""
+    return replace(problem, banned=banned, repertoires={}, poses={}, solved={}, begun={}, hopeless={})
 
 
 def variants(problem: Problem, unit: Unit, patch: str) -> tuple[Variant, ...]:

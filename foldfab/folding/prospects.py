@@ -26,9 +26,6 @@ RAISES = 4
 """How often plinths are made higher because of what the raised chain meets."""
 THE_BOX = "the bounding box"
 
-Moved = dict[object, Batch]
-"""The surroundings as they move with the bases, by way and section."""
-
 Room = dict[int, Bools]
 """By lane, which of its pieces (N_s,) meet something outside the unit."""
 
@@ -52,13 +49,12 @@ def prospects(problem: Problem, own: Repertoire, around: Surroundings, *, in_pla
     every = [x for many in plain.values() for x in many]
     room: Room = {}
     met: dict[int, set[int]] = {}
-    moved: Moved = {}
-    _look_at(problem, own, around, every, room, met, moved)
+    _look_at(problem, own, around, every, room, met)
     lanes = {}
     for patch, many in plain.items():
-        raised = [r for x in many if room[x.number].any() for r in _raised(problem, own, around, x, room, met, moved)]
+        raised = [r for x in many if room[x.number].any() for r in _raised(problem, own, around, x, room, met)]
         lanes[patch] = (*many, *raised)
-    _raise_partners(problem, own, around, lanes, room, met, moved)
+    _raise_partners(problem, own, around, lanes, room, met)
     owners = {n: tuple(sorted({_owner(around, i) for i in found})) for n, found in met.items()}
     return Prospects(lanes, room, owners, met)
 
@@ -66,14 +62,14 @@ def prospects(problem: Problem, own: Repertoire, around: Surroundings, *, in_pla
 def blocked_pieces(problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane]) -> Room:
     """Which pieces of some lanes meet something around the unit or leave what they must keep to."""
     room: Room = {}
-    _look_at(problem, own, around, many, room, {}, {})
+    _look_at(problem, own, around, many, room, {})
     return room
 
 
 def in_the_way(problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane]) -> tuple[str, ...]:
     """The owners of what some lanes meet around the unit, sorted."""
     met: dict[int, set[int]] = {}
-    _look_at(problem, own, around, many, {}, met, {})
+    _look_at(problem, own, around, many, {}, met)
     return tuple(sorted({_owner(around, box) for found in met.values() for box in found}))
 
 
@@ -89,21 +85,22 @@ def _owner(around: Surroundings, box: int) -> str:
 
 
 def _look_at(
-    problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane], room: Room, met: dict[int, set[int]],
-    moved: Moved,
-) -> None:  # fmt: skip
+    problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane], room: Room, met: dict[int, set[int]]
+) -> None:
     """Finds out which pieces of the lanes have no room, and what they meet."""
-    found, hit = _held_against(problem, own, around, many, moved)
-    room.update(found)
-    met.update(hit)
-    for x in many:
+    fresh = [x for x in many if x.number not in around.met]
+    found, hit = _held_against(problem, own, around, fresh)
+    for x in fresh:
         if x.is_out or (problem.options.stay_in_box and leaves_the_box(problem, own, around, x)):
-            room[x.number] = np.ones_like(room[x.number])
-            met[x.number].add(-1)
+            found[x.number] = np.ones_like(found[x.number])
+            hit[x.number].add(-1)
+        around.met[x.number] = found[x.number], hit[x.number]
+    for x in many:
+        room[x.number], met[x.number] = around.met[x.number]
 
 
 def _held_against(
-    problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane], moved: Moved
+    problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane]
 ) -> tuple[Room, dict[int, set[int]]]:
     """Which pieces of the lanes meet what is around them, and which of its boxes."""
     steps = problem.options.shrink_steps
@@ -111,16 +108,14 @@ def _held_against(
     met: dict[int, set[int]] = {x.number: set() for x in many}
     if not many or not len(around.boxes):
         return room, met
-    cuts, own_plates = cuts_of(own), _own_plates(problem, own, around)
+    cuts = cuts_of(own)
     for group in _alike(own, many):
         for section in range(own.nominal.sections):
             a = swept(problem, own, group, section)
             if a is None:
                 continue
-            key = (_way(own, group[0]), section)
-            if key not in moved:
-                moved[key] = _carried(own, around, group[0], section)
-            pieces, lanes, boxes = blocked(a, cuts, moved[key], own_plates)
+            b = _carried(own, around, group[0], section)
+            pieces, lanes, boxes = blocked(a, cuts, b, lambda: _own_plates(problem, own, around))
             for number, box in zip(lanes.tolist(), boxes.tolist(), strict=True):
                 met[number].add(box)
             for x in group:
@@ -145,8 +140,11 @@ def _way(own: Repertoire, x: Lane) -> object:
 
 def _carried(own: Repertoire, around: Surroundings, lead: Lane, section: int) -> Batch:
     """The surroundings as they move with the unit's bases while lanes like `lead` fold."""
-    shifts = np.stack([far_shift(own, lead, base, section) for base in own.unit.bases], axis=1)
-    return carried(around.boxes, shifts[:, around.group], np.arange(len(around.boxes)))
+    key = (_way(own, lead), section)
+    if key not in around.moved:
+        shifts = np.stack([far_shift(own, lead, base, section) for base in own.unit.bases], axis=1)
+        around.moved[key] = carried(around.boxes, shifts[:, around.group], np.arange(len(around.boxes)))
+    return around.moved[key]
 
 
 def _own_plates(problem: Problem, own: Repertoire, around: Surroundings) -> Bools:
@@ -159,9 +157,8 @@ def _own_plates(problem: Problem, own: Repertoire, around: Surroundings) -> Bool
 
 
 def _raised(
-    problem: Problem, own: Repertoire, around: Surroundings, first: Lane, room: Room, met: dict[int, set[int]],
-    moved: Moved,
-) -> tuple[Lane, ...]:  # fmt: skip
+    problem: Problem, own: Repertoire, around: Surroundings, first: Lane, room: Room, met: dict[int, set[int]]
+) -> tuple[Lane, ...]:
     """The lane on plinths as high as what it meets folded on its own bases; nothing where that does not help."""
     current, clear = first, problem.sites[first.patch].clear
     for _ in range(RAISES):
@@ -175,7 +172,7 @@ def _raised(
             return ()
         current = higher
         if current.number not in room:
-            _look_at(problem, own, around, [current], room, met, moved)
+            _look_at(problem, own, around, [current], room, met)
         if not room[current.number].any():
             break
     helps = current is not first and room[current.number].sum() < room[first.number].sum()
@@ -184,7 +181,7 @@ def _raised(
 
 def _raise_partners(
     problem: Problem, own: Repertoire, around: Surroundings, lanes: dict[str, tuple[Lane, ...]], room: Room,
-    met: dict[int, set[int]], moved: Moved,
+    met: dict[int, set[int]],
 ) -> None:  # fmt: skip
     """Slanted lanes drag their base together: where one stands on plinths, the others may as well."""
     wanted = sorted({x.variant for many in lanes.values() for x in many if x.drag is not None and any(x.variant.pads)})
@@ -193,7 +190,7 @@ def _raise_partners(
         found = (lane(problem, own, patch, v) for v in wanted if v not in made)
         fresh = [x for x in found if x is not None and sum(x.variant.pads) <= PAD_SHARE * problem.sites[patch].clear]
         if fresh:
-            _look_at(problem, own, around, fresh, room, met, moved)
+            _look_at(problem, own, around, fresh, room, met)
             lanes[patch] = (*many, *fresh)
 
 

@@ -3,6 +3,7 @@
 While a unit is folded, the units after it are still plain panels to it: where their hinges will be is not decided yet.
 Here they are shown as they became, with knuckles, feet and plinths. A conflict that is found in this way belongs to
 more than a pair of options (it depends on the order), so it is learned: the later patch must fold in another way.
+A unit to which everything near looks as it did when it was folded is not played again.
 """
 
 from __future__ import annotations
@@ -33,6 +34,9 @@ def first_clash(problem: Problem, scene: Scene, folds: tuple[UnitFold, ...]) -> 
         scene = shown(scene, fold.unit, fold.chains, is_folded=False)
     for fold in folds:
         around = look(problem, scene, repertoire(problem, fold.unit))
+        if around.key == fold.seen:
+            scene = after(problem, scene, fold)
+            continue
         numbers = problem.tree.number
         for pair in clashes(fold.unit, numbers, fold.chains, fold.motion, around, problem.thickness):
             blamed = max((p for p in pair if p in variants), key=lambda p: (order[p], p), default=None)

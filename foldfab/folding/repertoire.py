@@ -224,7 +224,7 @@ def _movers(problem: Problem, own: Repertoire, chain: Chain) -> tuple[dict[int, 
     elif chain.mechanism == "slanted":
         progress = np.linspace(0.0, 1.0, down.size).reshape(down.shape)
         end = reach(chain, progress[0])
-        far = (end - end[0]) @ np.stack([chain.across, chain.rise])
+        far = (end - end[0]) @ chain.plane
     else:
         progress = follow_down(chain, down - own.nominal.down[chain.far])
         far = None

@@ -80,7 +80,7 @@ def _unit_played(
         reasons = reasons_of(problem, own, found, chosen)
         cost = sum(o.cost for o in chosen.values())
         weight = sum(float(options[p].weight[proposal.chosen[p]]) for p in unit.patches)
-        return UnitFold(unit, chosen, reasons, *result, around.cluster, cost, weight)
+        return UnitFold(unit, chosen, reasons, *result, around.cluster, cost, weight, around.key)
     for patch, lanes in found.lanes.items():
         group.lanes[patch] += tuple(x for x in lanes if x not in group.lanes[patch])
     group.lessons += lessons_of(group, scene, unit, around, options, proposal, done, result)

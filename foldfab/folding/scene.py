@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -70,6 +70,8 @@ class Scene:
     """(n,) the base that each solid moves with, -1 where a place is empty."""
     shapes: dict[object, tuple[Solid, ...]] = field(default_factory=dict)
     """Solids that were made already."""
+    looks: dict[object, Any] = field(default_factory=dict, init=False)
+    """What units see of this very scene."""
 
     def moved(self, base: str) -> Array:
         """(3,) how far a base has come, mm."""

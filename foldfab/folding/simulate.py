@@ -133,11 +133,12 @@ def _first(
     first: Indices, second: Indices, found: Iterator[tuple[Indices, Indices, Indices]]
 ) -> Iterator[tuple[int, int, int]]:
     """What two labels (n,) and (m,) say of the boxes that meet, and the first frame in which they do."""
+    count = int(second.max(initial=0)) + 1
     for frame, p, q in found:
-        pairs, place = np.unique(np.stack([first[p], second[q]], axis=1), axis=0, return_inverse=True)
+        pairs, place = np.unique(first[p] * count + second[q], return_inverse=True)
         earliest = np.full(len(pairs), np.iinfo(np.int64).max)
-        np.minimum.at(earliest, place.ravel(), frame)
-        yield from zip(pairs[:, 0].tolist(), pairs[:, 1].tolist(), earliest.tolist(), strict=True)
+        np.minimum.at(earliest, place, frame)
+        yield from zip(*(many.tolist() for many in (*np.divmod(pairs, count), earliest)), strict=True)
 
 
 def _own_plates(number: Mapping[str, int], chains: tuple[Chain, ...], around: Surroundings) -> Bools:

@@ -14,7 +14,7 @@ from foldfab.folding.improve import improved, weight
 from foldfab.folding.model import FoldSolution, Modification, Step, Thickness
 from foldfab.folding.optimum import NO_MORE, PLAYING, lower_bound, optimal
 from foldfab.folding.ordering import Ordered, floors, greedy, travel
-from foldfab.folding.problem import Problem
+from foldfab.folding.problem import Problem, without
 from foldfab.folding.rehearsal import first_clash
 from foldfab.folding.scene import open_scene
 from foldfab.folding.site import sites, slab
@@ -75,7 +75,7 @@ def _solved(scaffold: Scaffold, thickness: Thickness) -> FoldSolution:
         met = first_clash(problem, open_scene(problem), ordered.folds)
         if met is None:
             return solution(problem, bound, ordered)
-        problem = replace(problem, banned=problem.banned | {met}, repertoires={}, poses={}, solved={}, hopeless={})
+        problem = without(problem, problem.banned | {met})
         choices = floors(problem)
     told = ", ".join(sorted({patch for patch, _ in problem.banned}))
     raise FoldingError(f"no folding solution found: {told} stay in the way of what folds before; try another thickness")

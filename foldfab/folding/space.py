@@ -10,7 +10,7 @@ hinge directions are prisms along the same line, so that which of their pieces m
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,6 +26,9 @@ SAMPLE = 8
 """One in this many meetings is looked at first."""
 CHUNK = 20_000
 """Pairs of boxes that are looked at in one go, for the sake of memory."""
+
+Excluded = Bools | Callable[[], Bools] | None
+"""(lanes of a, lanes of b) which are never compared, or how to find out where any come near each other."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,21 +86,21 @@ def still(boxes: Boxes, frames: int) -> Boxes:
     )  # fmt: skip
 
 
-def meetings(a: Batch, b: Batch, excluded: Bools | None = None) -> Iterator[tuple[Indices, Indices, Indices]]:
+def meetings(a: Batch, b: Batch, excluded: Excluded = None) -> Iterator[tuple[Indices, Indices, Indices]]:
     """Frame, box of `a` and box of `b` (k,) of all overlaps, in chunks.
 
-    `excluded` (lanes of a, lanes of b) says which lanes are never compared.
+    `excluded` says which lanes are never compared.
     """
     if not len(a) or not len(b):
         return
     i, j = near_pairs((a.least, a.most), (b.least, b.most))
-    if excluded is not None:
-        keep = ~excluded[a.lane[i], b.lane[j]]
+    if excluded is not None and len(i):
+        never = excluded() if callable(excluded) else excluded
+        keep = ~never[a.lane[i], b.lane[j]]
         i, j = i[keep], j[keep]
     for start in range(0, len(i), CHUNK):
         p, q = i[start : start + CHUNK], j[start : start + CHUNK]
-        near = (a.low[:, p] <= b.high[:, q]).all(-1) & (b.low[:, q] <= a.high[:, p]).all(-1)
-        frame, pair = np.nonzero(near)
+        frame, pair = np.nonzero(_near(a, b, p, q))
         if not len(frame):
             continue
         p, q = p[pair], q[pair]
@@ -106,7 +109,17 @@ def meetings(a: Batch, b: Batch, excluded: Bools | None = None) -> Iterator[tupl
             yield frame[hit], p[hit], q[hit]
 
 
-def blocked(a: Batch, cuts: Array, b: Batch, excluded: Bools | None = None) -> tuple[Bools, Indices, Indices]:
+def _near(a: Batch, b: Batch, p: Indices, q: Indices) -> Bools:
+    """(frames, k) when the bounds of each box `p` of `a` overlap those of the box `q` of `b`."""
+    # Axis by axis: that takes a third of the time of a reduction over rows of three.
+    found = np.ones((max(len(a.low), len(b.low)), len(p)), dtype=bool)
+    for axis in range(3):
+        found &= a.low[:, p, axis] <= b.high[:, q, axis]
+        found &= b.low[:, q, axis] <= a.high[:, p, axis]
+    return found
+
+
+def blocked(a: Batch, cuts: Array, b: Batch, excluded: Excluded = None) -> tuple[Bools, Indices, Indices]:
     """Which pieces of each lane of `a` meet `b`.
 
     Args:
@@ -132,6 +145,8 @@ def blocked(a: Batch, cuts: Array, b: Batch, excluded: Bools | None = None) -> t
         found[a.lane[p[row]], piece] = True
         lanes.append(a.lane[p[row]])
         others.append(q[row])
+    if len(lanes) == 1:
+        return found, lanes[0], others[0]
     pairs = np.unique(np.stack([np.concatenate(lanes), np.concatenate(others)]), axis=1)
     return found, pairs[0], pairs[1]
 

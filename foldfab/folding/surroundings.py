@@ -8,13 +8,14 @@ grows with the number of solids, and everything else with the number of near one
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from foldfab.folding.problem import Problem, clear_height, held
 from foldfab.folding.repertoire import Repertoire
 from foldfab.folding.scene import Scene, Solid
+from foldfab.folding.space import Batch
 from foldfab.folding.tree import between, clusters
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Array, Bools, Indices
@@ -53,10 +54,22 @@ class Surroundings:
     """By base of the unit, lower and upper corner (3,) of its cluster; empty unless the fold must stay in the box."""
     key: object
     """All that the unit's fold can depend on, hashable: equal keys, equal folds."""
+    moved: dict[object, Batch] = field(default_factory=dict)
+    """Its boxes as they move with the unit's bases, by way and section, as far as that was asked for."""
+    met: dict[int, tuple[Bools, set[int]]] = field(default_factory=dict)
+    """By lane of the unit that was held against it, which of its pieces (N_s,) have no room, and the boxes it meets."""
 
 
 def look(problem: Problem, scene: Scene, own: Repertoire) -> Surroundings:
-    """What a unit sees in a scene."""
+    """What a unit sees in a scene, looked at once for as long as no lane is added to what it can do."""
+    key = (own.unit, len(own.lanes))
+    if key not in scene.looks:
+        scene.looks[key] = _looked(problem, scene, own)
+    found: Surroundings = scene.looks[key]
+    return found
+
+
+def _looked(problem: Problem, scene: Scene, own: Repertoire) -> Surroundings:
     unit = own.unit
     cluster = clusters(problem.tree, unit)
     number = [problem.tree.number[b] for b in unit.bases]

@@ -48,6 +48,8 @@ class UnitFold:
     """Sum of its terms of eq. 1."""
     weight: float
     """What the search minimises: the cost, with deletions counted many times."""
+    seen: object
+    """All that it depends on (`Surroundings.key`)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -109,7 +111,8 @@ def _estimate(problem: Problem, scene: Scene, own: Repertoire, around: Surroundi
         return np.inf
     found = prospects(problem, own, around, in_place=False)
     graph = Graph(problem, own, found, around.offset, chosen=scene.chosen)
-    _, graph, picked = _picked(problem, scene, own, around, found, graph, in_place=False)
+    found, graph, picked = _picked(problem, scene, own, around, found, graph, in_place=False)
+    problem.begun[around.key, around.offset.tobytes()] = found, graph
     return graph.weight(picked) if picked is not None else np.inf
 
 
@@ -161,8 +164,7 @@ def _fold(
     if around.standing:
         return Refusal(unit, f"{', '.join(sorted(around.standing)[:3])} in the way still stands unfolded")
     why: list[str] = []
-    found = prospects(problem, own, around, in_place=in_place)
-    graph = Graph(problem, own, found, around.offset, chosen=scene.chosen)
+    found, graph = _begun(problem, scene, own, around, in_place=in_place)
     for _ in range(ROUNDS):
         found, graph, picked = _picked(problem, scene, own, around, found, graph, in_place=in_place)
         if picked is None:
@@ -172,10 +174,21 @@ def _fold(
         if not isinstance(result, Clash):
             reasons = reasons_of(problem, own, found, chosen)
             cost = sum(o.cost for o in chosen.values())
-            return UnitFold(unit, chosen, reasons, *result, around.cluster, cost, graph.weight(picked))
+            return UnitFold(unit, chosen, reasons, *result, around.cluster, cost, graph.weight(picked), around.key)
         why += [result.reason] if result.reason not in why else []
         graph.learn(picked, result)
     return Refusal(unit, reason_against(problem, own, found, why))
+
+
+def _begun(
+    problem: Problem, scene: Scene, own: Repertoire, around: Surroundings, *, in_place: bool
+) -> tuple[Prospects, Graph]:
+    """What the unit can do and its conflict graph, made already where it was estimated in such surroundings."""
+    known: tuple[Prospects, Graph] | None = problem.begun.pop((around.key, around.offset.tobytes()), None)
+    if known is not None and not in_place:
+        return known
+    found = prospects(problem, own, around, in_place=in_place)
+    return found, Graph(problem, own, found, around.offset, chosen=scene.chosen)
 
 
 def _picked(

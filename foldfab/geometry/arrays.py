@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import TypeGuard
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,10 +24,12 @@ FEW = 16
 def frozen(values: ArrayLike, *shape: int) -> Array:
     """A read-only float copy of `values`, checked to be finite and of `shape` (-1 matches any length).
 
+    What is read-only already and nobody's view is taken as it is.
+
     Raises:
         ValueError: the shape differs or a value is not finite.
     """
-    array = np.array(values, dtype=np.float64)
+    array = values if _is_read_only(values) else np.array(values, dtype=np.float64)
     _require_shape(array, shape)
     # A few numbers, as most arrays here hold, are judged faster one by one.
     is_finite = all(map(math.isfinite, array.ravel().tolist())) if array.size <= FEW else np.isfinite(array).all()
@@ -42,6 +45,13 @@ def frozen_indices(values: ArrayLike, *shape: int) -> Indices:
     _require_shape(array, shape)
     array.setflags(write=False)
     return array
+
+
+def _is_read_only(values: ArrayLike) -> TypeGuard[Array]:
+    """Whether nothing can write to what is a float array already, not even through an array that it is a view of."""
+    if not isinstance(values, np.ndarray) or values.dtype != np.float64:
+        return False
+    return not values.flags.writeable and values.flags.owndata
 
 
 def _require_shape(array: Array | Indices, shape: tuple[int, ...]) -> None:

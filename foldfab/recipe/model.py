@@ -167,7 +167,7 @@ class Recipe:
 
     name: str
     direction: Array | None
-    """(3,) unit folding direction d; None tries all six axis directions."""
+    """(3,) unit folding direction d; None takes the best of those that are tried."""
     parts: tuple[Part, ...]
     fold: FoldOptions
     print: PrintOptions
@@ -177,6 +177,8 @@ class Recipe:
     """Where it came from, for messages."""
     notes: tuple[str, ...] = ()
     """What reading had to suppose or leave out, a sentence each."""
+    why: str = ""
+    """Why it folds along its direction, where that was chosen for the maker."""
 
     def __post_init__(self) -> None:
         if self.direction is not None:

@@ -24,6 +24,8 @@ TOUCH_SHARE = 0.02
 the whole, so that a composite is abstracted like its cells."""
 STEEP_THICKNESSES = 1.5
 """A base that slopes by more than this many panel thicknesses is printed level, and a note says so."""
+RAIL_THICKNESSES = 5.0
+"""A part that touches no base is a rail where it is no higher than this many panel thicknesses."""
 MOST_OWN = 20.0
 """mm in print; what is thicker of its own is printed as thick as this."""
 STUB_THICKNESSES = 2.5
@@ -43,12 +45,16 @@ def abstract(recipe: Recipe, direction: Array, scale: float) -> Scaffold:
     _require_connected(parts, tolerance)
     stub = STUB_THICKNESSES * thickness
     layout, patches, notes = _laid_out(parts, tolerance, stub, thickness + gap)
-    loose = set(_loose(parts, layout, patches))
-    level = {s.name for s in parts if s.name in loose and seg.is_level(s)}
-    if level:
-        # A rail that touches no base can be one: it lies level, and what it touches folds.
-        parts = tuple(seg.as_base(s) if s.name in level else s for s in parts)
-        layout, patches, notes = _laid_out(parts, tolerance, stub, thickness + gap)
+    cornered: frozenset[str] = frozenset()
+    # A rail that touches no base can be one: it lies level, and what it touches folds. A part that is as high as the
+    # others belongs to the base of an end that it meets at a corner; where it meets none it is printed level as well.
+    for most, has_corners in ((RAIL_THICKNESSES * thickness, False), (0.0, True), (np.inf, True)):
+        loose = set(_loose(parts, layout, patches))
+        level = {s.name for s in parts if s.name in loose and seg.is_level(s) and seg.slope(s) <= most}
+        cornered |= frozenset(loose - level if has_corners else ())
+        if level or (loose and has_corners):
+            parts = tuple(seg.as_base(s) if s.name in level else s for s in parts)
+            layout, patches, notes = _laid_out(parts, tolerance, stub, thickness + gap, cornered)
     if not layout.bases:
         names = tuple(s.name for s in parts)
         raise AbstractionError(
@@ -89,10 +95,14 @@ def _require_connected(parts: tuple[Segment, ...], tolerance: float) -> None:
 
 
 def _laid_out(
-    parts: tuple[Segment, ...], tolerance: float, stub: float, distance: float
+    parts: tuple[Segment, ...],
+    tolerance: float,
+    stub: float,
+    distance: float,
+    cornered: frozenset[str] = frozenset(),
 ) -> tuple[Layout, tuple[Patch, ...], tuple[str, ...]]:
     leaves = sheets(tuple(s for s in parts if not s.is_base), distance)
-    layout = find_bases(tuple(s for s in parts if s.is_base), leaves, tolerance, stub)
+    layout = find_bases(tuple(s for s in parts if s.is_base), leaves, tolerance, stub, cornered)
     return layout, *cut(leaves, layout, stub)
 
 

@@ -48,7 +48,13 @@ class Layout:
     """By sheet, its lines that lie in a base patch, lowest first."""
 
 
-def find_bases(parts: tuple[Segment, ...], leaves: tuple[Sheet, ...], tolerance: float, stub: float) -> Layout:
+def find_bases(
+    parts: tuple[Segment, ...],
+    leaves: tuple[Sheet, ...],
+    tolerance: float,
+    stub: float,
+    cornered: frozenset[str] = frozenset(),
+) -> Layout:
     """The base patches of the parts perpendicular to d and of the sheets' ends.
 
     Args:
@@ -56,6 +62,7 @@ def find_bases(parts: tuple[Segment, ...], leaves: tuple[Sheet, ...], tolerance:
         leaves: the sheets that fold.
         tolerance: parts closer than this touch, mm.
         stub: shorter pieces of a sheet than this cannot fold and are trimmed, mm.
+        cornered: parts whose ends belong to the base of an end that they meet at a corner.
     """
     touching: list[list[int]] = [[] for _ in leaves]
     joints: list[tuple[int, int]] = []
@@ -70,7 +77,7 @@ def find_bases(parts: tuple[Segment, ...], leaves: tuple[Sheet, ...], tolerance:
     for k, members in enumerate(touched, len(parts)):
         for j in members:
             whole.join(k, j)
-    for k, other in _meeting_ends(leaves, lines, tolerance):
+    for k, other in _meeting_ends(leaves, lines, tolerance, cornered):
         whole.join(len(parts) + k, len(parts) + other)
     is_needed = _connecting(Groups(len(parts), joints), touched)
     return _layout(whole, parts, leaves, lines, is_needed)
@@ -121,10 +128,13 @@ def _with_ends(
     return [ends[0], *((height, members, 0) for height, members in inner), ends[1]]
 
 
-def _meeting_ends(leaves: tuple[Sheet, ...], lines: list[Line], tolerance: float) -> list[tuple[int, int]]:
+def _meeting_ends(
+    leaves: tuple[Sheet, ...], lines: list[Line], tolerance: float, cornered: frozenset[str]
+) -> list[tuple[int, int]]:
     """Which lines, by their numbers, are ends of different sheets that meet along their length.
 
     Ends that only meet at a corner are left apart: they would make a base out of air where two T-scaffolds fold freely.
+    Ends of `cornered` parts are not: these have no other base to fold onto.
     """
     ends = [k for k, line in enumerate(lines) if line.end]
     if not ends:
@@ -133,7 +143,8 @@ def _meeting_ends(leaves: tuple[Sheet, ...], lines: list[Line], tolerance: float
     found = []
     for i, j in _pairs(strips, strips):
         a, b = lines[ends[i]].sheet, lines[ends[j]].sheet
-        if a < b and abs(leaves[a].along @ leaves[b].along) > ALIGNED:
+        is_corner = abs(leaves[a].along @ leaves[b].along) <= ALIGNED
+        if a < b and (not is_corner or not cornered.isdisjoint(leaves[a].parts + leaves[b].parts)):
             found.append((ends[i], ends[j]))
     return found
 

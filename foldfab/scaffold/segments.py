@@ -83,7 +83,7 @@ def sheet(segment: Segment) -> tuple[Array, Array, float, float, float]:
         part in the plane that contains `along` (perpendicular to d) and rises most steeply.
     """
     thin, middle, long = np.argsort(segment.half, kind="stable")
-    if _is_rod(segment.half):
+    if is_rod(segment.half):
         return _spanned(segment, segment.axes[long], segment.axes[thin])
     found = _spanned(segment, cross(segment.axes[thin], _level(segment.axes[thin])), segment.axes[thin])
     if found[2] * found[3] > FILLING * 4 * segment.half[middle] * segment.half[long]:
@@ -95,7 +95,13 @@ def slope(segment: Segment) -> float:
     """How much higher one end of its medial sheet is than the other, mm."""
     rise = np.abs(segment.axes[:, 2]) * segment.half
     _, middle, long = np.argsort(segment.half, kind="stable")
-    return 2 * float(rise[long] if _is_rod(segment.half) else rise[long] + rise[middle])
+    return 2 * float(rise[long] if is_rod(segment.half) else rise[long] + rise[middle])
+
+
+def is_rod(half: Array) -> bool:
+    """Whether a part with these half lengths (3,) is a rod, and not a board."""
+    thin, middle, long = sorted(half.tolist())
+    return bool(long > ROD_RATIO * middle and middle < ROD_RATIO * thin)
 
 
 def as_base(segment: Segment) -> Segment:
@@ -133,11 +139,6 @@ def _are_perpendicular(axes: Array, half: Array) -> Bools:
     level_plate = np.abs(axes[every, order[:, 0], 2]) > np.cos(PLATE_TILT)
     level: Bools = np.where(is_rod, level_rod, level_plate)
     return level
-
-
-def _is_rod(half: Array) -> bool:
-    thin, middle, long = sorted(half.tolist())
-    return bool(long > ROD_RATIO * middle and middle < ROD_RATIO * thin)
 
 
 def _spanned(segment: Segment, axis: Array, normal: Array) -> tuple[Array, Array, float, float, float]:

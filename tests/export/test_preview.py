@@ -5,7 +5,8 @@ import io
 import numpy as np
 from PIL import Image
 
-from foldfab.export.preview import CELL, HEAD, caption, label, preview_png
+from foldfab.export.page import CELL, HEAD
+from foldfab.export.preview import caption, label, preview_png
 from foldfab.export.shell import sheet_shells
 from foldfab.fabrication.model import Assembly
 

@@ -32,6 +32,18 @@ def test_pieces() -> None:
     assert solids.pieces(solids.union([CUBE, CUBE.translate([20.0, 0.0, 0.0])])) == 2
 
 
+def test_a_speck_beside_a_body_counts_until_it_is_tidied() -> None:
+    speck = solids.box((20, 0, 0), (28, 0.009, 0.0024))
+    assert solids.pieces(solids.union([CUBE, speck])) == 2
+    assert solids.pieces(solids.tidied(solids.union([CUBE, speck]))) == 1
+
+
+def test_a_void_and_a_second_body_are_no_specks() -> None:
+    hollow = solids.cut(CUBE, [solids.box((4, 4, 4), (6, 6, 6))])
+    assert solids.pieces(solids.tidied(hollow)) == 2
+    assert solids.pieces(solids.tidied(solids.union([CUBE, solids.box((20, 0, 0), (21, 1, 1))]))) == 2
+
+
 def test_facets_never_eat_into_a_gap() -> None:
     pin, hole = solids.rod(2.0, 0.0, 10.0, 0.0, 0.0), solids.rod(2.0, 0.0, 10.0, 0.0, 0.0, is_hole=True)
     circle = np.pi * 4.0 * 10.0

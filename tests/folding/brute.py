@@ -110,7 +110,7 @@ def _holds(
             for patch, many in prospects(problem, own, around, in_place=False).lanes.items():
                 lanes[patch] += tuple(x for x in many if x not in lanes[patch])
             return False
-        fold = UnitFold(unit, {p: chosen[p] for p in unit.patches}, {}, *result, around.cluster, 0.0, 0.0)
+        fold = UnitFold(unit, {p: chosen[p] for p in unit.patches}, {}, *result, around.cluster, 0.0, 0.0, around.key)
         folds.append(fold)
         scene = after(problem, scene, fold)
     return first_clash(problem, open_scene(problem), tuple(folds)) is None

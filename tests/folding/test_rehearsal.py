@@ -25,7 +25,8 @@ Folded = Callable[[Problem], tuple[Scene, list[tuple[Scene, UnitFold]]]]
 
 
 def folds_of(made: Problem, folded: Folded) -> tuple[UnitFold, ...]:
-    return tuple(fold for _, fold in folded(made)[1])
+    """The folds of all units, as if nothing were known of what they saw: all of them are played."""
+    return tuple(replace(fold, seen=None) for _, fold in folded(made)[1])
 
 
 @pytest.mark.parametrize("name", ["box_with_table", "shelf", "tower", "three_walls", "chair", "table", "deep_box"])
@@ -43,6 +44,18 @@ def test_a_table_that_is_folded_too_late_is_to_blame(problem: Make, folded: Fold
     assert found is not None
     patch, variant = found
     assert patch in ("leg-left", "leg-right") and variant == table.chosen[patch].variant
+
+
+def test_what_looks_as_it_did_when_it_was_folded_is_not_played_again(
+    problem: Make, folded: Folded, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = problem("box_with_table", slanting=False)
+    folds = tuple(fold for _, fold in folded(made)[1])
+    monkeypatch.setattr(rehearsal, "clashes", lambda *_: [("leg-left", "left")])
+    assert first_clash(made, open_scene(made), folds[::-1]) is not None
+    assert first_clash(made, open_scene(made), (replace(folds[0], seen=None), folds[1])) is not None
+    monkeypatch.setattr(rehearsal, "clashes", lambda unit, *_: [("leg-left", "left")] if unit is folds[1].unit else [])
+    assert first_clash(made, open_scene(made), folds) is None
 
 
 def test_later_units_are_shown_open_with_the_hinges_that_they_have(

@@ -12,6 +12,7 @@ from foldfab.folding.congruent import repertoire
 from foldfab.folding.ordering import after
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import prospects
+from foldfab.folding.repertoire import extend
 from foldfab.folding.scene import Scene, alone, open_scene
 from foldfab.folding.surroundings import Surroundings, depends_on, look
 from foldfab.folding.unit_fold import UnitFold, fold_unit
@@ -225,3 +226,13 @@ def test_the_key_says_what_is_gone_and_only_in_the_box_where_the_unit_is(problem
         assert seen(made, replace(scene, gone=frozenset({"a"})), "b").key != key
         lower = replace(scene, offset=scene.offset - np.array([0.0, 0.0, 5.0]))
         assert (seen(made, lower, "b").key != key) == stay_in_box
+
+
+def test_a_scene_is_looked_at_once_until_a_unit_can_do_more(in_box: Problem) -> None:
+    own = repertoire(in_box, in_box.units[0])
+    scene = open_scene(in_box)
+    first = look(in_box, scene, own)
+    assert look(in_box, scene, own) is first
+    assert look(in_box, replace(scene, offset=scene.offset.copy()), own) is not first
+    extend(in_box, own, own.unit.patches[0])
+    assert look(in_box, scene, own) is not first

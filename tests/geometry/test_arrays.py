@@ -38,3 +38,19 @@ def test_only_finite_values_are_taken(value: float) -> None:
 def test_minus_one_matches_any_length() -> None:
     assert frozen(np.zeros((7, 3)), -1, 3).shape == (7, 3)
     assert frozen_indices(np.zeros((0, 2)), -1, 2).shape == (0, 2)
+
+
+def test_what_is_frozen_is_not_copied_again() -> None:
+    first = frozen([1.0, 2.0], 2)
+    assert frozen(first, 2) is first
+    with pytest.raises(ValueError, match="expected shape"):
+        frozen(first, 3)
+
+
+def test_a_read_only_view_is_copied() -> None:
+    source = np.zeros(3)
+    view = source[:]
+    view.setflags(write=False)
+    copy = frozen(view, 3)
+    source[0] = 1.0
+    assert copy.tolist() == [0.0, 0.0, 0.0]

@@ -67,6 +67,25 @@ def test_a_rail_that_only_touches_what_folds_becomes_a_base(
     assert [p.name for p in made.patches] == ["left.1", "left.2", "right.1", "right.2"]
 
 
+def test_a_back_that_only_touches_its_seat_folds_with_it(scaffold: Make, box: Box) -> None:
+    legs = [box(f"leg-{x}-{z}", (x, -40, z), (4, 80, 4)) for x in (-40, 40) for z in (2, 78)]
+    seat, back = box("seat", (0, 2, 40), (84, 4, 80)), box("back", (-40, 44, 40), (4, 80, 80))
+    made = scaffold((*legs, seat, back))
+    assert [base.parts for base in made.bases] == [("leg--40-2", "leg-40-2"), ("leg--40-78", "leg-40-78")]
+    assert made.patch("back").bases == made.patch("seat").bases == tuple(base.name for base in made.bases)
+    assert made.notes == ()
+
+
+def test_ends_that_meet_at_corners_alone_are_one_base_where_nothing_else_is(scaffold: Make, box: Box) -> None:
+    back, rear = box("back", (40, -40, 40), (4, 79, 80)), box("rear", (40, 40, 40), (4, 79, 80))
+    seat, front = box("seat", (0, 0, 40), (76, 4, 80)), box("front", (-40, 40, 40), (4, 79, 80))
+    made = scaffold((back, rear, seat, front))
+    low, high = made.bases
+    assert {patch.name: patch.bases for patch in made.patches} == dict.fromkeys(
+        ("back", "front", "rear", "seat"), (low.name, high.name)
+    )
+
+
 def test_a_base_that_slopes_is_told(scaffold: Make, box: Box, wall_at: Box) -> None:
     seat = replace(
         box("seat", (0, 0, 80), (120, 40, 4)), axes=np.array([[0.966, 0, 0.259], [0, 1, 0], [-0.259, 0, 0.966]])

@@ -1,0 +1,118 @@
+"""A recipe along one direction: solved at the scale asked for, or the largest at which its print fits the printer."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from foldfab.errors import AbstractionError, FoldingError
+from foldfab.geometry.arrays import Array
+from foldfab.recipe.model import Posture, Recipe
+from foldfab.scaffold.directions import AXES, title
+
+if TYPE_CHECKING:
+    from foldfab.folding.model import FoldSolution
+    from foldfab.scaffold.model import Scaffold
+
+MARGIN_THICKNESSES = 2.0
+"""How much wider than the furniture's sheets the print may be on account of plates and knuckles, in K."""
+SCALE_ROUNDS = 6
+"""How often the scale of a print is reduced until it fits the bed."""
+
+
+def along(recipe: Recipe, direction: Array) -> FoldSolution:
+    """The folding solution along the unit `direction` (3,), as large as it can be printed in its posture.
+
+    Raises:
+        AbstractionError: the parts make no scaffold along it; the message names directions that would do.
+        FoldingError: nothing folds, or it does not fit.
+    """
+    from foldfab.fabrication.room import share_of_bed
+    from foldfab.folding.solve import solve
+
+    posture = settled_posture(recipe)
+    if recipe.print.scale is not None:
+        return _standing(solve(abstracted(recipe, direction, recipe.print.scale)), posture)
+    scale = _fitting_scale(recipe, direction, posture)
+    for _ in range(SCALE_ROUNDS):
+        solution = _standing(solve(abstracted(recipe, direction, scale)), posture)
+        share = share_of_bed(solution, posture)
+        if share <= 1.0:
+            return solution
+        scale *= 0.99 / share
+    raise FoldingError(
+        f"{recipe.name}, {posture}, does not fit the {recipe.print.printer.name}; give a scale below {scale:.3g}"
+    )
+
+
+def settled_posture(recipe: Recipe) -> Posture:
+    """The posture of a recipe that no longer leaves it open.
+
+    Raises:
+        FoldingError: it does.
+    """
+    if recipe.print.posture == "auto":
+        raise FoldingError(f"{recipe.name}: its posture is auto; call foldfab.postures.settled_posture(recipe) first")
+    return recipe.print.posture
+
+
+def _standing(solution: FoldSolution, posture: Posture) -> FoldSolution:
+    """The solution itself, if it can be printed in its posture."""
+    from foldfab.fabrication.posture import edge_problem
+
+    problem = edge_problem(solution) if posture == "edge" else None
+    if problem:
+        raise FoldingError(f"{solution.scaffold.recipe.name}: {problem}")
+    return solution
+
+
+def abstracted(recipe: Recipe, direction: Array, scale: float) -> Scaffold:
+    """The scaffold along `direction` at `scale`, with why it is that direction where it was chosen for the maker.
+
+    Raises:
+        AbstractionError: there is none; the message names directions that would do.
+    """
+    from foldfab.scaffold.abstract import abstract
+
+    try:
+        made = abstract(recipe, direction, scale)
+        return replace(made, notes=(recipe.why, *made.notes)) if recipe.why else made
+    except AbstractionError as error:
+        able = [name for name, axis in AXES.items() if name[0] == "-" and _has_scaffold(recipe, axis, scale)]
+        advice = f"try --direction {' or '.join(able)}" if able else "no axis direction gives a scaffold"
+        raise AbstractionError(f"{recipe.name} along {title(direction)}: {error}; {advice}", error.parts) from error
+
+
+def _has_scaffold(recipe: Recipe, axis: tuple[int, int, int], scale: float) -> bool:
+    from foldfab.scaffold.abstract import abstract
+
+    try:
+        return bool(abstract(recipe, np.array(axis, dtype=np.float64), scale).patches)
+    except AbstractionError:
+        return False
+
+
+def _fitting_scale(recipe: Recipe, direction: Array, posture: Posture) -> float:
+    """About the largest scale at which the furniture fits the bed in its posture, either way round."""
+    from foldfab.fabrication.room import largest_scale
+
+    size = _size(recipe)
+    thickest = max(recipe.print.thickness, recipe.print.base_thickness or 0.0)
+    bed = np.array(recipe.print.printer.build_volume) - MARGIN_THICKNESSES * thickest
+    if (bed <= 0).any():
+        raise FoldingError(f"the {recipe.print.printer.name} is too small for plates of {thickest:g} mm")
+    if posture != "open":
+        from foldfab.geometry.rotation import upright
+
+        size = np.abs(upright(direction)) @ size
+    return largest_scale(recipe, posture, size, bed)
+
+
+def _size(recipe: Recipe) -> Array:
+    """(3,) true size of the furniture's bounds, mm."""
+    reach = np.array([np.abs(p.axes.T) @ p.size / 2 for p in recipe.parts])
+    center = np.array([p.center for p in recipe.parts])
+    size: Array = (center + reach).max(0) - (center - reach).min(0)
+    return size

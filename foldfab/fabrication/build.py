@@ -11,6 +11,7 @@ import numpy as np
 from foldfab.errors import FabricationError
 from foldfab.fabrication import solids
 from foldfab.fabrication.bodies import bodies
+from foldfab.fabrication.bores import blocked, bored
 from foldfab.fabrication.inspect import inspect
 from foldfab.fabrication.joinery import cut_to_bed, with_breaks
 from foldfab.fabrication.model import Assembly, Finding, Joint
@@ -29,7 +30,7 @@ from foldfab.folding.kinematics import configuration, key_times
 from foldfab.folding.mechanism import joints, tilts
 from foldfab.folding.model import Chain, FoldSolution
 from foldfab.geometry.arrays import Array
-from foldfab.recipe.hinges import hinge_problem
+from foldfab.recipe.hinges import STYLES, hinge_problem
 from foldfab.recipe.model import Posture
 
 Progress = Callable[[str, float], None]
@@ -66,10 +67,8 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
     ramps = relief(solution, made, up) if up is not None else {}
     held = stopped(draft, made, ramps)
     made, draft = held.made, replace(draft, joints=held.joints, shapes=held.shapes)
-    if up is not None:
-        made = {name: solids.tidied(solids.cut(body, ramps[name])) for name, body in made.items()}
-        props = propped(made, poses, up, solution.thickness.gap)
-        draft = replace(draft, joints=measured(draft, made), propped=bodies(solution, props))
+    made, draft, told = _finished(draft, made, ramps)
+    findings += told
     draft = replace(draft, bodies=bodies(solution, made))
     findings += [*snap_findings(solution), *_notes(solution)]
     findings += inspect(draft, made, lambda share: tell("inspection", share), held.gives)
@@ -77,6 +76,22 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
     draft, more = cut_to_bed(draft, made)
     _require_sound(more)
     return replace(draft, findings=(*findings, *more))
+
+
+def _finished(
+    draft: Assembly, made: dict[str, Solid], ramps: dict[str, list[Solid]]
+) -> tuple[dict[str, Solid], Assembly, list[Finding]]:
+    """What is cut once the stops stand: ramps on edge, and bores that are to be open for their pins."""
+    solution = draft.solution
+    if draft.up is not None:
+        made = {name: solids.tidied(solids.cut(body, ramps[name])) for name, body in made.items()}
+        props = propped(made, draft.poses, draft.up, solution.thickness.gap)
+        draft = replace(draft, joints=measured(draft, made), propped=bodies(solution, props))
+    elif STYLES[solution.thickness.hinge].has_loose_pin:
+        made, shapes = bored(solution, made, draft.shapes)
+        draft = replace(draft, shapes=shapes)
+        return made, replace(draft, joints=measured(draft, made)), blocked(draft, made)
+    return made, draft, []
 
 
 def _require_hinges(solution: FoldSolution, posture: Posture) -> None:

@@ -55,7 +55,7 @@ def _changes(recipe: Recipe) -> Iterator[tuple[str, Recipe]]:
     finer = replace(fold, shrink_steps=FINER * fold.shrink_steps)
     yield f"with windows of {finer.shrink_steps} steps", replace(recipe, fold=finer)
     thin = max(THINNEST, recipe.print.thickness / 2)
-    if thin < recipe.print.thickness:
+    if thin < recipe.print.thickness and not recipe.print.may_thin:
         yield f"with plates of {thin:g} mm", replace(recipe, print=replace(recipe.print, thickness=thin))
     for name, axis in AXES.items():
         other = np.array(axis, dtype=np.float64)

@@ -21,7 +21,7 @@ _OPTIONS: tuple[tuple[str, str, str], ...] = (
     ("--nozzle", "MM", "diameter of the nozzle (0.4)"),
     ("--layer", "MM", "height of a layer (0.2)"),
     ("--material", "M", "pla, petg, abs or nylon"),
-    ("--thickness", "MM", "thickness of plates and panels, 2 to 20"),
+    ("--thickness", "MM", "thickness of plates and panels, 2 to 20; auto: 4, or less where only that folds"),
     ("--base-thickness", "MM", "thickness of base plates, where it is another"),
     ("--alpha", "A", "weight of inserted hinges (1) against shrinking (0)"),
     ("--max-hinges", "N", "most hinges that may be inserted in one patch, 1 to 9"),

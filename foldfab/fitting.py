@@ -9,6 +9,7 @@ import numpy as np
 
 from foldfab.errors import AbstractionError, FoldingError
 from foldfab.geometry.arrays import Array
+from foldfab.recipe.hinges import hinge_problem
 from foldfab.recipe.model import Posture, Recipe
 from foldfab.scaffold.directions import AXES, title
 
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
 
 MARGIN_THICKNESSES = 2.0
 """How much wider than the furniture's sheets the print may be on account of plates and knuckles, in K."""
+THINNER = (3.0, 2.0)
+"""Thicknesses of plates that are tried where thicker ones do not fold, mm; thinner ones do not print."""
 SCALE_ROUNDS = 6
 """How often the scale of a print is reduced until it fits the bed."""
 
@@ -25,10 +28,51 @@ SCALE_ROUNDS = 6
 def along(recipe: Recipe, direction: Array) -> FoldSolution:
     """The folding solution along the unit `direction` (3,), as large as it can be printed in its posture.
 
+    Where the recipe leaves the thickness of plates open, they are made thinner until all of it folds.
+
     Raises:
         AbstractionError: the parts make no scaffold along it; the message names directions that would do.
         FoldingError: nothing folds, or it does not fit.
     """
+    if not recipe.print.may_thin:
+        return _fitted(recipe, direction)
+    found: list[FoldSolution] = []
+    refused: FoldingError | None = None
+    for panel in _thicknesses(recipe):
+        try:
+            found.append(_fitted(_with_plates(recipe, panel), direction))
+        except FoldingError as error:
+            refused = error
+        else:
+            if not _gone(found[-1]):
+                break
+    if not found:
+        assert refused is not None
+        raise refused
+    best = min(found, key=_gone)
+    if best.scaffold.recipe.print.thickness == recipe.print.thickness:
+        return best
+    lost = "parts would have to go" if len(found) > 1 else "it would not fold"
+    why = f"plates are {best.thickness.panel:g} mm thick because with thicker ones {lost}"
+    return replace(best, notes=(*best.notes, why))
+
+
+def _thicknesses(recipe: Recipe) -> tuple[float, ...]:
+    """The thicknesses of plates that are tried, mm: those that hinges of the recipe's kind can be made in."""
+    own = recipe.print
+    thinner = [panel for panel in THINNER if panel < own.thickness and not hinge_problem(own.hinge, panel, None)]
+    return (own.thickness, *thinner)
+
+
+def _with_plates(recipe: Recipe, panel: float) -> Recipe:
+    return replace(recipe, print=replace(recipe.print, thickness=panel, may_thin=False))
+
+
+def _gone(solution: FoldSolution) -> int:
+    return sum(m.is_deleted for m in solution.modifications)
+
+
+def _fitted(recipe: Recipe, direction: Array) -> FoldSolution:
     from foldfab.fabrication.room import share_of_bed
     from foldfab.folding.solve import solve
 

@@ -19,7 +19,7 @@ from foldfab.recipe.form import (
     PrintForm,
     RecipeForm,
 )
-from foldfab.recipe.model import FoldOptions, Part, Pattern, Printer, PrintOptions, Recipe
+from foldfab.recipe.model import USUAL_THICKNESS, FoldOptions, Part, Pattern, Printer, PrintOptions, Recipe
 from foldfab.recipe.patterns import snapped
 from foldfab.recipe.printers import PRINTERS
 
@@ -125,7 +125,8 @@ def build_print(form: PrintForm) -> PrintOptions:
     clearance = profile(form.nozzle, form.layer, form.material) if is_auto else float(form.clearance)
     return PrintOptions(
         printer=_printer(form.printer),
-        thickness=float(form.thickness),
+        thickness=USUAL_THICKNESS if form.thickness == "auto" else float(form.thickness),
+        may_thin=form.thickness == "auto",
         base_thickness=None if form.base_thickness is None else float(form.base_thickness),
         own_thickness=form.own_thickness,
         clearance=clearance,

@@ -14,7 +14,7 @@ from foldfab.errors import Problem, RecipeError
 from foldfab.recipe.build import build_print, unit_direction
 from foldfab.recipe.clearance import profile
 from foldfab.recipe.form import Direction, FoldForm, Form, PrintForm
-from foldfab.recipe.model import Part, Pattern, Printer, PrintOptions, Recipe
+from foldfab.recipe.model import USUAL_THICKNESS, Part, Pattern, Printer, PrintOptions, Recipe
 from foldfab.recipe.names import same_name
 from foldfab.recipe.patterns import hinges_problem, rigid_problem, window_problem
 from foldfab.recipe.printers import printer as find_printer
@@ -88,13 +88,21 @@ def _replaced(
         options["scale"] = None
     if printer is not None:
         options["printer"] = find_printer(printer)
-    options |= _clearance(recipe, options)
+    options |= _thickness(options) | _clearance(recipe, options)
     return replace(
         recipe,
         direction=unit_direction(way["direction"]) if way else recipe.direction,
         fold=replace(recipe.fold, **fold),
         print=replace(recipe.print, **options),
     )
+
+
+def _thickness(options: dict[str, Any]) -> dict[str, Any]:
+    """The thickness, and whether it is for foldfab to say."""
+    if "thickness" not in options:
+        return {}
+    is_auto = options["thickness"] == "auto"
+    return {"thickness": USUAL_THICKNESS if is_auto else options["thickness"], "may_thin": is_auto}
 
 
 def _clearance(recipe: Recipe, options: dict[str, Any]) -> dict[str, Any]:

@@ -140,7 +140,8 @@ def _allowed_hinges(hinges: int, info: ValidationInfo) -> int:
 
 
 def _makeable(hinge: HingeKind, info: ValidationInfo) -> HingeKind:
-    _complain(hinge_problem(hinge, info.data.get("thickness"), info.data.get("posture")))
+    thickness = info.data.get("thickness")
+    _complain(hinge_problem(hinge, _PRINT.thickness if thickness == "auto" else thickness, info.data.get("posture")))
     return hinge
 
 
@@ -168,6 +169,10 @@ Direction = Annotated[
 Scale = Annotated[
     Annotated[Literal["fit"], Tag("<fit>")] | Annotated[float, Field(ge=1e-5, le=1e3), Tag("<number>")],
     Discriminator(lambda value: "<fit>" if isinstance(value, str) else "<number>"),
+]
+Thickness = Annotated[
+    Annotated[Literal["auto"], Tag("<auto>")] | Annotated[Plate, Tag("<number>")],
+    Discriminator(lambda value: "<auto>" if isinstance(value, str) else "<number>"),
 ]
 Clearance = Annotated[
     Annotated[Literal["auto"], Tag("<auto>")] | Annotated[float, Field(ge=LEAST, le=MOST), Tag("<number>")],
@@ -324,7 +329,10 @@ class PrintForm(Form):
     """How the model is to be printed; always in millimetres of the print."""
 
     printer: PrinterChoice = Field(default=DEFAULT_PRINTER.name, description="A known printer or one's own.")
-    thickness: Plate = Field(default=_PRINT.thickness, description="Thickness of plates and panels, mm.")
+    thickness: Thickness = Field(
+        default="auto",
+        description="Thickness of plates and panels, mm; auto is 4, or less where it folds whole only so.",
+    )
     base_thickness: Plate | None = Field(
         default=None, description="Thickness of base plates, mm; that of panels where missing."
     )

@@ -128,13 +128,19 @@ class Printer:
     """mm, x × y × z."""
 
 
+USUAL_THICKNESS = 4.0
+"""K where nobody says another, mm."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PrintOptions:
     """How the model is to be printed."""
 
     printer: Printer
-    thickness: float = 4.0
+    thickness: float = USUAL_THICKNESS
     """K, the thickness of plates and panels, mm in print."""
+    may_thin: bool = field(default=False, compare=False)
+    """Whether K may be less than that, where the furniture folds whole only then."""
     base_thickness: float | None = None
     """The thickness of base plates, mm in print; None where it is K."""
     own_thickness: bool = False

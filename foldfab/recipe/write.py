@@ -75,7 +75,7 @@ def _pattern(pattern: Pattern) -> dict[str, Any]:
 def _print(options: PrintOptions) -> dict[str, Any]:
     return {
         "printer": {"name": options.printer.name, "build_volume": list(options.printer.build_volume)},
-        "thickness": options.thickness,
+        "thickness": "auto" if options.may_thin else options.thickness,
         "base_thickness": options.base_thickness,
         "own_thickness": options.own_thickness,
         "clearance": options.clearance,

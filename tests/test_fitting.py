@@ -1,0 +1,85 @@
+"""One direction at the scale that fits, and plates as thin as it takes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from foldfab import fitting
+from foldfab.errors import FoldingError
+from foldfab.fitting import along
+from foldfab.folding.model import FoldSolution
+from foldfab.geometry.arrays import Array
+from foldfab.recipe.model import FoldOptions, Part, PrintOptions, Recipe
+from foldfab.recipe.printers import DEFAULT_PRINTER
+
+DOWN = np.array([0.0, 0.0, -1.0])
+
+
+@pytest.fixture
+def low_table(box: Callable[..., Part]) -> Callable[..., Recipe]:
+    """A board on a wall between boards whose middles are `height` mm of print apart."""
+
+    def make(height: float, **options: object) -> Recipe:
+        parts = (
+            box("ground", (0, 0, 0), (80, 60, 2)),
+            box("top", (0, 0, height), (80, 60, 2)),
+            box("wall", (0, 0, height / 2), (2, 60, height - 2)),
+        )
+        made = PrintOptions(printer=DEFAULT_PRINTER, scale=1.0, may_thin=True)
+        return Recipe("low", DOWN, parts, FoldOptions(), replace(made, **options))  # type: ignore[arg-type]
+
+    return make
+
+
+def told(recipe: Recipe) -> list[str]:
+    return [note for note in along(recipe, DOWN).notes if "thick because" in note]
+
+
+@pytest.mark.parametrize(("height", "panel"), [(40.0, 4.0), (15.0, 3.0), (11.5, 2.0)])
+def test_plates_are_as_thin_as_it_takes(low_table: Callable[..., Recipe], height: float, panel: float) -> None:
+    solution = along(low_table(height), DOWN)
+    assert solution.thickness.panel == panel
+    assert solution.scaffold.recipe.print.thickness == panel and not solution.scaffold.recipe.print.may_thin
+
+
+def test_thinner_plates_are_told_of(low_table: Callable[..., Recipe]) -> None:
+    assert told(low_table(40.0)) == []
+    assert told(low_table(15.0)) == ["plates are 3 mm thick because with thicker ones it would not fold"]
+
+
+def test_what_the_recipe_says_is_not_thinned(low_table: Callable[..., Recipe]) -> None:
+    with pytest.raises(FoldingError, match="thinner than 4 mm"):
+        along(low_table(15.0, may_thin=False), DOWN)
+
+
+def test_what_is_too_low_for_the_thinnest_plates_is_refused(low_table: Callable[..., Recipe]) -> None:
+    with pytest.raises(FoldingError, match="cannot carry hinges"):
+        along(low_table(8.0), DOWN)
+
+
+def test_hinges_that_need_thick_plates_keep_them_thick(low_table: Callable[..., Recipe]) -> None:
+    with pytest.raises(FoldingError, match="thinner than 4 mm"):
+        along(low_table(15.0, hinge="clip"), DOWN)
+
+
+@pytest.mark.parametrize(("whole_at", "panel"), [((3.0, 2.0), 3.0), ((2.0,), 2.0), ((), 4.0)])
+def test_plates_are_thinned_so_that_nothing_has_to_go(
+    low_table: Callable[..., Recipe], monkeypatch: pytest.MonkeyPatch, whole_at: tuple[float, ...], panel: float
+) -> None:
+    """Where even the thinnest plates spare no part, they stay as thick as usual."""
+    fitted = fitting._fitted
+
+    def losing(recipe: Recipe, direction: Array) -> FoldSolution:
+        found = fitted(recipe, direction)
+        gone = tuple(replace(m, mechanism="deleted") for m in found.modifications)
+        return found if recipe.print.thickness in whole_at else replace(found, modifications=gone)
+
+    monkeypatch.setattr(fitting, "_fitted", losing)
+    solution = along(low_table(40.0), DOWN)
+    assert solution.thickness.panel == panel
+    why = f"plates are {panel:g} mm thick because with thicker ones parts would have to go"
+    assert (why in solution.notes) == (panel < 4.0)

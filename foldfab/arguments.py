@@ -37,7 +37,10 @@ _SHAPES = (
     ("--smallest", "MM", "bodies no longer than this are hardware, left out (2 %% of the furniture's longest side)"),
 )
 _SLICER = "--slicer"
-_REPEATED = (("--rigid", "NAME", "a part that must not get a hinge in its middle; may be given again for others"),)
+_REPEATED = (
+    ("--rigid", "NAME", "a part that must not get a hinge in its middle; may be given again for others"),
+    ("--ignore", "NAME", "parts that are left out, such as cushion*; may be given again for others"),
+)
 
 
 def parser(run: Mapping[str, Run], version: type[argparse.Action]) -> argparse.ArgumentParser:
@@ -69,7 +72,8 @@ def parser(run: Mapping[str, Run], version: type[argparse.Action]) -> argparse.A
         (trying, looking), (comparing, looking), (making, f"{looking} and no summary"), (folding, looking),
     )  # fmt: skip
     for command, quiet in (*told, (understanding, "no notes")):
-        what = "a recipe (.json) or its name, a STEP, GLB, glTF, OBJ, 3MF or STL file, or a folder of STL files"
+        kinds = "STEP, GLB, glTF, OBJ, 3MF, STL, URDF, MJCF"
+        what = f"a recipe (.json) or its name, a file of shapes ({kinds}), or a folder of STL files"
         command.add_argument("recipe", metavar="FILE", help=what)
         command.add_argument("-q", "--quiet", action="store_true", help=quiet)
         _add_options(command)

@@ -27,12 +27,14 @@ if TYPE_CHECKING:
 
 HINGE = 0.01
 """What a hinge inserted takes off the score: as much as 1 % of space."""
+MOST_LOST = 0.5
+"""Share of the furniture; where more of it is lost, it is not this furniture that folds."""
 SEARCH = 0.5
 """Seconds of work for each direction, where the recipe allows more; the best one is solved anew with all of them."""
 _WORTH_SAYING = 0.005
 """Shares below this round to nothing."""
-_DIGITS = 6
-"""Of scores: those that agree in them are equal."""
+_DIGITS = 2
+"""Of scores: of those that agree in them the way down is best, as furniture stands, then that along x."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -146,8 +148,8 @@ def lacks(way: Way, best: Way) -> str:
 
 def losses(way: Way) -> str:
     """What the fold does without, or lays level; empty where all is there."""
-    taken = [f"taken away: {_listed(way.gone)}"] if way.gone else []
-    return "; ".join([*taken, *([f"laid level: {_listed(tuple(way.level))}"] if way.level else [])])
+    taken = [f"taken away ({_listed(way.gone)})"] if way.gone else []
+    return " or ".join([*taken, *([f"laid level ({_listed(tuple(way.level))})"] if way.level else [])])
 
 
 def _listed(names: tuple[str, ...]) -> str:
@@ -167,7 +169,10 @@ def _way(recipe: Recipe, direction: Array, frame: Array) -> Way:
         return Way(direction, " ".join(str(reason).split()))
     opened = _least(solution, 0.0, [np.eye(3), frame])
     folded = _least(solution, 1.0, _frames_along(direction, frame))
-    return Way(direction, "", solution, opened, folded, turned(solution.scaffold), _removed(solution))
+    way = Way(direction, "", solution, opened, folded, turned(solution.scaffold), _removed(solution))
+    if way.lost <= MOST_LOST:
+        return way
+    return Way(direction, f"what folds is another piece: {100 * way.lost:.0f} % of this one is {losses(way)}")
 
 
 def _removed(solution: FoldSolution) -> float:
@@ -185,7 +190,7 @@ def _least(solution: FoldSolution, time: float, frames: list[Array]) -> tuple[fl
 
     turn = solution.scaffold.rotation.T
     sizes = [size_at(solution, time, frame @ turn) for frame in frames]
-    x, y, z = min(sizes, key=lambda size: round(float(size.prod()), _DIGITS)).tolist()
+    x, y, z = min(sizes, key=lambda size: round(float(size.prod()), 6)).tolist()
     return x, y, z
 
 
@@ -211,7 +216,7 @@ def _why(rows: tuple[Row, ...]) -> str:
     told = f"direction {best.name} was chosen of {2 * len(rows)}: it saves {100 * best.saving:.0f} % of the space"
     told += f" at cost {best.cost:.2f} with {best.hinges or 'no'} hinge{'s' * (best.hinges != 1)} inserted"
     if best.lost >= _WORTH_SAYING:
-        told += f", though {100 * best.lost:.0f} % of its area is lost ({losses(best)})"
+        told += f", though {100 * best.lost:.0f} % of it is {losses(best)}"
     if not rest:
         return f"{told}; nothing folds along the others"
     return f"{told}; {rest[0].name} would be next ({lacks(rest[0], best) or 'just as good'})"

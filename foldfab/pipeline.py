@@ -8,12 +8,12 @@ write(assembly, Path("prints/bench"))
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from foldfab.errors import FoldingError, Problem, RecipeError
+from foldfab.errors import AbstractionError, FoldingError, Problem, RecipeError
 from foldfab.fitting import abstracted, along, settled_posture
 from foldfab.recipe.model import Posture, Recipe
 
@@ -32,17 +32,18 @@ Progress = Callable[[str], None]
 
 def load(
     source: str | Path | build123d.Shape, *, units: str | None = None, up: str | None = None,
-    split_shells: bool = False, smallest: float | None = None, **overrides: Any,
+    split_shells: bool = False, smallest: float | None = None, ignore: Collection[str] = (), **overrides: Any,
 ) -> Recipe:  # fmt: skip
     """The furniture in a recipe, in a file of shapes, or in a build123d object, with options put over it.
 
     Args:
-        source: a recipe's file or one that foldfab ships; a STEP, GLB, glTF, OBJ, 3MF or STL file; a folder of
-            STL files; or a build123d object.
+        source: a recipe's file or one that foldfab ships; a STEP, GLB, glTF, OBJ, 3MF, STL, URDF or MJCF file; a
+            folder of STL files; or a build123d object.
         units: of a file of shapes, "mm", "cm", "m" or "in"; what it states, or a guess that is noted, where missing.
         up: the axis of a file of shapes that points up, "x", "y" or "z"; that of its format where missing.
         split_shells: whether shells of one body that do not touch are parts of their own.
         smallest: mm; bodies no longer than this are hardware and left out.
+        ignore: names of parts that are left out, with * and ? for those that are alike.
         overrides: options of the command line, by name.
 
     Raises:
@@ -54,7 +55,8 @@ def load(
     from foldfab.recipe.clearance import calibrated
     from foldfab.recipe.edit import override
 
-    recipe = opened(source, Wishes(units=units, up=up, split_shells=split_shells, smallest=smallest))
+    asked = Wishes(units=units, up=up, split_shells=split_shells, smallest=smallest, ignore=tuple(ignore))
+    recipe = opened(source, asked)
     return calibrated(override(recipe, **overrides) if overrides else recipe)
 
 
@@ -128,10 +130,13 @@ def directed(recipe: Recipe) -> Recipe:
     """The recipe with the best direction, and why it is that one, where it names none.
 
     Raises:
+        AbstractionError: its parts do not hang together.
         FoldingError: it folds along no direction that is tried.
     """
     from foldfab.directions import settled
 
+    if recipe.direction is None:
+        _require_connected(recipe)
     return settled(with_pins(recipe))
 
 
@@ -139,10 +144,12 @@ def directions(recipe: Recipe, tell: Progress = lambda text: None) -> tuple[Row,
     """What becomes of a recipe along each direction that is tried, best first.
 
     Raises:
+        AbstractionError: its parts do not hang together.
         FoldingError: the plates are too thin for the hinges of the posture.
     """
     from foldfab.directions import ranked
 
+    _require_connected(recipe)
     return ranked(with_pins(recipe), tell)
 
 
@@ -264,3 +271,13 @@ def shipped() -> tuple[Path, ...]:
     from foldfab.recipe.find import shipped as found
 
     return found()
+
+
+def _require_connected(recipe: Recipe) -> None:
+    """Raises: AbstractionError: its parts do not hang together, whatever the direction."""
+    from foldfab.scaffold.abstract import check_connected
+
+    try:
+        check_connected(recipe)
+    except AbstractionError as error:
+        raise AbstractionError(f"{recipe.name}: {error}", error.parts) from error

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from foldfab.fabrication.model import Assembly
+from foldfab.fabrication.model import AS_READ, Assembly
 from foldfab.folding.model import FoldSolution, Modification
 from foldfab.geometry.arrays import Array
 from foldfab.postures import Row as PostureRow
@@ -276,7 +276,8 @@ def _after(assembly: Assembly) -> list[str]:
 
 
 def _findings(assembly: Assembly) -> str:
-    notes = [f"  {finding.text}" for finding in assembly.findings]
+    # What reading had to suppose was told when the file was read.
+    notes = [f"  {finding.text}" for finding in assembly.findings if finding.code != AS_READ]
     return "\n".join(["Worth knowing", *notes]) if notes else ""
 
 

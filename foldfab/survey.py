@@ -79,14 +79,14 @@ def _pictures(rows: tuple[Row, ...], name: str) -> dict[str, bytes]:
 
 def _caption(rank: int, way: Way) -> str:
     facts = [
-        f"{rank}.", f"score {way.score:.3f}", f"saves {100 * way.saving:.0f} % of its space", f"cost {way.cost:.2f}",
+        f"{rank}.", f"score {way.score:.2f}", f"saves {100 * way.saving:.0f} % of its space", f"cost {way.cost:.2f}",
         f"{way.hinges} hinge{'s' * (way.hinges != 1)} added", f"{_size(way.opened)} to {_size(way.folded)} mm",
     ]  # fmt: skip
     return "   ·   ".join(facts)
 
 
 def _cells(rank: int, row: Row, first: Row) -> tuple[str, ...]:
-    way, figures = row.best, (f"{row.best.score:.3f}", f"{100 * row.best.saving:.0f} %", f"{row.best.cost:.4f}")
+    way, figures = row.best, (f"{row.best.score:.2f}", f"{100 * row.best.saving:.0f} %", f"{row.best.cost:.4f}")
     lost = f"{100 * way.lost:.0f} %" if way.lost else "-"
     notes = [losses(way) if row is first else lacks(way, first.best), _other(row)]
     told = "; ".join(note for note in notes if note)
@@ -101,8 +101,7 @@ def _other(row: Row) -> str:
     other = row.other
     if other.solution is None:
         return f"{other.name} does not fold"
-    text = f"{other.score:.3f}"
-    return "" if text == f"{row.best.score:.3f}" else f"{other.name} scores {text}"
+    return "" if other.score == row.best.score else f"{other.name} scores {other.score:.2f}"
 
 
 def _size(extent: tuple[float, ...]) -> str:

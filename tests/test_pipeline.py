@@ -112,10 +112,16 @@ def test_alternatives_share_direction_and_scale(tmp_path: Path, monkeypatch: pyt
 
 
 def test_auto_says_why_nothing_folds(tmp_path: Path) -> None:
-    apart = [TABLE[0], {"name": "far", "box": {"center": [0, 0, 9000], "size": [100, 100, 30]}}]
     with pytest.raises(FoldingError, match="none of the six axis directions") as raised:
-        foldfab.foldabilize(loaded(tmp_path, parts=apart, direction="auto"))
+        foldfab.foldabilize(loaded(tmp_path, parts=TABLE[:1], direction="auto"))
     assert len(str(raised.value).splitlines()) >= 7
+
+
+def test_auto_says_once_what_is_loose(tmp_path: Path) -> None:
+    apart = [TABLE[0], {"name": "far", "box": {"center": [0, 0, 9000], "size": [100, 100, 30]}}]
+    with pytest.raises(AbstractionError, match="far is 8270 mm from top") as raised:
+        foldfab.foldabilize(loaded(tmp_path, parts=apart, direction="auto"))
+    assert raised.value.parts == ("far",) and len(str(raised.value).splitlines()) == 1
 
 
 def test_a_direction_without_a_scaffold_names_one_that_works(tmp_path: Path) -> None:

@@ -25,9 +25,9 @@ _CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))
 _QUADS = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
 _FACES = np.concatenate([_QUADS[:, [0, 1, 2]], _QUADS[:, [0, 2, 3]]])
 """(12, 3) counter-clockwise seen from outside."""
-ARROW, HEAD, WIDTH = 44.0, 15.0, 4
+ARROW, HEAD, WIDTH = 36.0, 14.0, 4
 """Half the length of the arrow along the folding direction, the length of its head, and its width, px."""
-PLACE = (70, 66)
+PLACE = (52, 336)
 """Its middle, px from the corner of the picture."""
 
 

@@ -14,7 +14,7 @@ from foldfab.fabrication.bodies import bodies
 from foldfab.fabrication.bores import blocked, bored
 from foldfab.fabrication.inspect import inspect
 from foldfab.fabrication.joinery import cut_to_bed, with_breaks
-from foldfab.fabrication.model import Assembly, Finding, Joint
+from foldfab.fabrication.model import AS_READ, Assembly, Finding, Joint
 from foldfab.fabrication.own import own_shapes
 from foldfab.fabrication.panels import panels
 from foldfab.fabrication.plates import axis_of, plate
@@ -112,8 +112,10 @@ def _require_sound(findings: list[Finding]) -> None:
 
 
 def _notes(solution: FoldSolution) -> list[Finding]:
-    why = solution.scaffold.recipe.print.why
-    return [*([Finding("posture", why)] if why else []), *(Finding("note", note) for note in solution.notes)]
+    recipe = solution.scaffold.recipe
+    posture = [Finding("posture", recipe.print.why)] if recipe.print.why else []
+    read = [Finding(AS_READ, note) for note in recipe.notes]
+    return [*posture, *read, *(Finding("note", note) for note in solution.notes)]
 
 
 def _shapes(solution: FoldSolution) -> tuple[dict[str, Shape], list[Finding]]:

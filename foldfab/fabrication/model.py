@@ -101,6 +101,10 @@ class Finding:
     """True where the print would not work."""
 
 
+AS_READ = "as-read"
+"""The code of findings that the recipe brings with it."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Assembly:
     """All bodies, joints and poses of one print."""

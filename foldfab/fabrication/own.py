@@ -13,11 +13,12 @@ import numpy as np
 
 from foldfab.fabrication import solids
 from foldfab.fabrication.model import Finding
-from foldfab.fabrication.plates import RIM, axis_of
+from foldfab.fabrication.plates import axis_of
 from foldfab.fabrication.printed import printed
 from foldfab.fabrication.shapes import Shape, cut, placed, prism
 from foldfab.fabrication.solids import Outline
 from foldfab.fabrication.walls import thin_sides
+from foldfab.folding.anatomy import RIM
 from foldfab.folding.mechanism import frames
 from foldfab.folding.model import Chain, FoldSolution
 from foldfab.geometry.arrays import Array, Indices

@@ -9,7 +9,7 @@ from foldfab.fabrication.printed import printed
 from foldfab.fabrication.shapes import Shape, box, cut, hull, placed, union
 from foldfab.fabrication.solids import pieces, without_crumbs
 from foldfab.fabrication.styles import style
-from foldfab.folding.anatomy import base_boxes, faces
+from foldfab.folding.anatomy import RIM, base_boxes, faces
 from foldfab.folding.mechanism import joints, tilts
 from foldfab.folding.model import Chain, Thickness
 from foldfab.geometry.arrays import Array
@@ -18,8 +18,6 @@ from foldfab.scaffold.model import BasePatch
 
 GROWTH = (0.0, 0.2, 0.5, 1.0, 2.0)
 """By how much outlines are grown, mm, until parts that touch are one body."""
-RIM = 0.4
-"""How far the plate reaches beyond a foot, mm."""
 ROOT_SHARE = 0.5
 """How deep a foot reaches into its plate, as a share of its own thickness or the plate's."""
 

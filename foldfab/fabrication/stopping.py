@@ -39,8 +39,9 @@ def stopped(assembly: Assembly, made: dict[str, Solid], ramps: Mapping[str, list
         ends = stops(assembly.solution, chain, hinge, in_open=assembly.posture in ("open", "plate"))
         ways = ((False, ends), (True, rests(assembly.solution, chain, hinge)))
         if assembly.posture == "edge":
-            # There, a tongue or a rest would begin in the air.
-            ways = ((False, (stop for stop in ends if stop.kind != "tongue")), (True, iter(())))
+            # There, a tongue would begin in the air.
+            ends = (stop for stop in ends if stop.kind != "tongue")
+            ways = ((False, ends), (True, rests(assembly.solution, chain, hinge, assembly.up)))
         for is_folded, candidates in ways:
             best = _best(trial, name, candidates, is_folded)
             if best is not None:

@@ -19,6 +19,7 @@ A stop is tried on the solids (`trial`) before it is made: there may be no room 
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -27,7 +28,9 @@ import numpy as np
 from foldfab.fabrication.hinges import Knuckles, Mark, knuckles
 from foldfab.fabrication.latches import Detent, detent
 from foldfab.fabrication.plates import axis_of
-from foldfab.fabrication.shapes import Shape, box, cut, placed
+from foldfab.fabrication.relief import STEEP
+from foldfab.fabrication.shapes import Shape, box, cut, placed, prism
+from foldfab.fabrication.walls import LINE
 from foldfab.folding.anatomy import faces
 from foldfab.folding.mechanism import frames, joints, tilts
 from foldfab.folding.model import Chain, FoldSolution, Thickness
@@ -57,6 +60,11 @@ WEB = 1.5
 """How far a lap reaches into its own panel, mm."""
 FAR = 100.0
 """Beyond everything that a stop is cut with, mm."""
+EDGE = 2 * LINE
+"""A wall thinner than this between a slot and an edge of its base may be cut away, mm."""
+
+_LYING = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+"""Turns a prism, drawn along y, so that it is drawn along -z and its outline lies in x and y."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -116,8 +124,11 @@ def stops(solution: FoldSolution, chain: Chain, hinge: int, *, in_open: bool) ->
         yield Stop(name, "tongue", False, panel, material, base, hole, latch)
 
 
-def rests(solution: FoldSolution, chain: Chain, hinge: int) -> Iterator[Stop]:
-    """The ways to stop a base hinge at its folded end."""
+def rests(solution: FoldSolution, chain: Chain, hinge: int, up: Array | None = None) -> Iterator[Stop]:
+    """The ways to stop a base hinge at its folded end.
+
+    `up` (3,) is the hinge direction that points up in print, where it stands on edge: there a rest has a ramp below it.
+    """
     if 0 < hinge < len(chain.lengths):
         return
     name, first, second = _names(chain, hinge)
@@ -126,9 +137,19 @@ def rests(solution: FoldSolution, chain: Chain, hinge: int) -> Iterator[Stop]:
     top = -mount.thickness.axis_height
     reach = mount.thickness.gap / np.sin(AIM)
     thick = min(mount.thickness.panel, mount.depth + top)
-    for low, high in _places(mount.span, WIDEST, mount.marks.free):
-        tab = box((0.0, low, top - thick), (reach, high, top))
-        yield Stop(name, "rest", True, base, placed(tab, mount.origin, mount.frame), panel)
+    way = 0.0 if up is None else float(np.sign(mount.frame[1] @ up))
+    ramp = abs(way) * STEEP * max(reach - mount.thickness.panel / 2, 0.0)
+    for low, high in _places(mount.span, WIDEST, mount.marks.free, ramp):
+        tab = _tab(mount.thickness.panel / 2, reach, (low, high), way * ramp)
+        flat = placed(prism(tab, -top, thick - top), np.zeros(3), _LYING)
+        yield Stop(name, "rest", True, base, placed(flat, mount.origin, mount.frame), panel)
+
+
+def _tab(root: float, reach: float, span: Mark, ramp: float) -> list[tuple[float, float]]:
+    """The outline (x, y) of a rest, whose tip is `ramp` mm narrower than its root: below, or above where it is < 0."""
+    low, high = span
+    ends = (low + max(ramp, 0.0), high + min(ramp, 0.0))
+    return [(0.0, low), (root, low), (reach, ends[0]), (reach, ends[1]), (root, high), (0.0, high)]
 
 
 def _names(chain: Chain, hinge: int) -> tuple[str, str, str]:
@@ -161,14 +182,18 @@ def _tongues(mount: _Mount) -> Iterator[tuple[Shape, Shape, Detent | None]]:
     reach = min(close / np.sin(AIM), most)
     sweep = float(np.hypot(half, reach)) + gap
     is_through = mount.depth - (reach + gap) * np.cos(mount.lean) < SKIN
-    through = mount.depth / np.cos(mount.lean) + half * abs(np.tan(mount.lean)) + OPEN
-    bottom = -(through if is_through else reach + gap)
-    for low, high in _within(mount.marks.follower, gap):
-        top = sweep * max(0.0, float(np.sin(-mount.lean)))
-        slot = box((-sweep, low - gap, bottom), (front + close, high + gap, top))
+    top = sweep * max(0.0, float(np.sin(-mount.lean)))
+    # A slot that ends close to an edge of its base is opened there, because the wall beyond it would be too thin.
+    for spare, (low, high) in itertools.product((0.0, EDGE), _within(mount.marks.follower, gap)):
+        back = -sweep - spare
+        bottom = -(mount.depth + FAR) if is_through else -(reach + gap)
+        slot = _leant(box((back, low - gap, bottom), (front + close, high + gap, top)), mount)
+        if is_through:
+            # Seen along a panel that leans, its corners are not equally deep.
+            slot = cut(slot, [box((-FAR * 10, -FAR * 10, -FAR * 10), (FAR * 10, FAR * 10, -mount.depth - OPEN))])
         holding = detent(half, front, reach, gap, low, high)
         holding = holding and holding.at(np.zeros(3), _leaning(mount))
-        yield _leant(box((-half, low, -reach), (front, high, 0.0)), mount), _leant(slot, mount), holding
+        yield _leant(box((-half, low, -reach), (front, high, 0.0)), mount), slot, holding
 
 
 def _heels(mount: _Mount) -> Iterator[Shape]:
@@ -258,11 +283,15 @@ def _within(marks: tuple[Mark, ...], gap: float) -> Iterator[Mark]:
             yield (low + high - width) / 2, (low + high + width) / 2
 
 
-def _places(span: Mark, widest: float, breaks: tuple[Mark, ...]) -> Iterator[Mark]:
-    """Places on a span: in its middle, then towards its ends, then narrow ones; none in what is to be left free."""
+def _places(span: Mark, widest: float, breaks: tuple[Mark, ...], ramp: float = 0.0) -> Iterator[Mark]:
+    """Places on a span: in its middle, then towards its ends, then narrow ones; each with room for a `ramp`, mm.
+
+    None is in what is to be left free.
+    """
     low, high = span
-    for width in (min((high - low) / 2, widest), min((high - low) / 4, widest / 2)):
-        if width >= NARROWEST:
+    for room in (min((high - low) / 2, widest), min((high - low) / 4, widest / 2)):
+        width = room + ramp
+        if room >= NARROWEST and width <= high - low:
             for share in (0.5, 0.1, 0.9):
                 start = low + share * (high - low - width)
                 if not any(a < start + width and start < b for a, b in breaks):

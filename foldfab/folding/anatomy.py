@@ -18,6 +18,9 @@ from foldfab.geometry.boxes import Boxes, stacked
 from foldfab.geometry.rotation import cosine, sine
 from foldfab.scaffold.model import BasePatch
 
+RIM = 0.4
+"""How far plates reach beyond the feet on them, mm."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Face:

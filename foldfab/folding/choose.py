@@ -154,7 +154,11 @@ class _Search:
     def __init__(self, costs: list[Array], table: Table, forbidden: list[Combination]) -> None:
         self.costs = costs
         self.table = table
-        self.forbidden = sorted(forbidden)
+        self.forbidden: dict[tuple[int, int], list[Combination]] = {}
+        """By (group, option), the forbidden combinations that it belongs to."""
+        for combination in sorted(forbidden):
+            for place in combination:
+                self.forbidden.setdefault(place, []).append(combination)
         self.left = LIMIT
         self.best: dict[int, int] | None = None
         self.bound = np.inf
@@ -178,7 +182,7 @@ class _Search:
 
     def _descend(self, alive: dict[int, Bools], taken: dict[int, int], spent: float, group: int, option: int) -> None:
         now = {**taken, group: option}
-        if any(all(now.get(g) == o for g, o in combination) for combination in self.forbidden):
+        if any(all(now.get(g) == o for g, o in others) for others in self.forbidden.get((group, option), ())):
             return
         left = {}
         for other, options in alive.items():

@@ -7,6 +7,7 @@ each, like the cells of a honeycomb; exponential in the width of the graph: it g
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 import numpy as np
@@ -59,7 +60,7 @@ def _scope(factors: list[Factor], group: int) -> tuple[int, ...]:
 
 
 def _entries(scope: tuple[int, ...], size: Mapping[int, int]) -> int:
-    return int(np.prod([size[g] for g in scope], dtype=np.int64))
+    return math.prod(size[g] for g in scope)
 
 
 def _sum(factors: list[Factor], scope: tuple[int, ...], size: Mapping[int, int]) -> Array:

@@ -16,7 +16,7 @@ from foldfab.geometry.arrays import Array, Bools
 
 UNITS_PER_COST = 1e8
 """Costs are rounded to integers of this resolution."""
-WORK = 20.0
+WORK = 2.0
 """Deterministic time after which the best choice so far is taken."""
 
 
@@ -63,6 +63,9 @@ def _solved(
     solver = cp_model.CpSolver()
     solver.parameters.num_workers = 1
     solver.parameters.random_seed = 0
+    # Probing thousands of options that exclude each other would take all the work; the relaxation needs hardly any.
+    solver.parameters.cp_model_probing_level = 0
+    solver.parameters.linearization_level = 2
     solver.parameters.max_deterministic_time = WORK
     status = solver.solve(model)
     if status == cp_model.INFEASIBLE:

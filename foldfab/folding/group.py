@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -46,8 +46,19 @@ class Group:
     lanes: dict[str, tuple[Lane, ...]]
     """By patch; those on plinths are added as they are asked for."""
     lessons: list[Lesson] = field(default_factory=list)
+    """In the order in which they were learned."""
+    learned: set[Lesson] = field(default_factory=set)
+    """The same, to tell what is new."""
     excluded: tuple[Mapping[str, Signature], ...] = ()
     """Modifications of all patches that are not asked for again, nor with less left of them."""
+
+
+def learn(group: Group, lessons: Iterable[Lesson]) -> None:
+    """Adds what was not learned before."""
+    for lesson in lessons:
+        if lesson not in group.learned:
+            group.learned.add(lesson)
+            group.lessons.append(lesson)
 
 
 def posed(group: Group) -> tuple[dict[str, Options], Master]:

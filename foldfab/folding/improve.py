@@ -27,16 +27,22 @@ BETTER = 1e-5
 """By how much an order must be cheaper."""
 
 
-def improved(problem: Problem, known: Ordered, choices: Mapping[str, Choice]) -> Ordered:
+def improved(problem: Problem, known: Ordered, choices: Mapping[str, Choice], work: float) -> Ordered:
     """An order that counts less than the one known, or that one.
 
-    `choices` is the cheapest choice of each unit by itself.
+    Args:
+        problem: the scaffold and its units.
+        known: a greedy order.
+        choices: the cheapest choice of each unit by itself.
+        work: how many patches may be played through before nothing more is tried.
     """
-    banned = problem.banned
+    banned, most = problem.banned, sum(problem.plays) + work
     for _ in range(ROUNDS):
         blamed = list(dict.fromkeys(_blamed(problem, open_scene(problem), known, choices)))[:TRIES]
-        tried = [(_under(problem, banned | {ban}), ban) for ban in blamed]
-        found = [(order, ban) for order, ban in tried if order is not None]
+        found = []
+        for ban in blamed:
+            order = _under(problem, banned | {ban}) if sum(problem.plays) < most else None
+            found += [(order, ban)] if order is not None else []
         if not found or weight(min(found, key=lambda f: weight(f[0]))[0]) > weight(known) - BETTER:
             break
         known, ban = min(found, key=lambda f: weight(f[0]))

@@ -59,7 +59,7 @@ def optimal(
     best = (
         [sum(folds[n].weight for n in names) for names in groups] if is_whole else [_weight(known) if known else np.inf]
     )
-    settled = [_is_settled(names, b, floor, is_whole=is_whole) for names, b in zip(groups, best, strict=True)]
+    settled = [_is_settled(names, b, floor, folds if is_whole else {}) for names, b in zip(groups, best, strict=True)]
     bound = float(sum(b for b, done in zip(best, settled, strict=True) if done))
     left = [(names, b) for names, b, done in zip(groups, best, settled, strict=True) if not done]
     for names, least in left:
@@ -78,22 +78,22 @@ def optimal(
 
 def lower_bound(problem: Problem, scene: Scene, known: Ordered, floor: Mapping[str, float]) -> float:
     """What any order counts at least: a unit that has to do with no other one cannot do better than it does."""
-    folds = {f.unit.name: f.weight for f in known.folds}
+    folds = {f.unit.name: f for f in known.folds}
     if set(folds) != set(floor):
         return float(sum(floor.values()))
     groups = neighbouring(problem, scene)
-    best = [sum(folds[n] for n in names) for names in groups]
+    best = [sum(folds[n].weight for n in names) for names in groups]
     return float(
         sum(
-            b if _is_settled(g, b, floor, is_whole=True) else sum(floor[n] for n in g)
+            b if _is_settled(g, b, floor, folds) else sum(floor[n] for n in g)
             for g, b in zip(groups, best, strict=True)
         )
     )
 
 
-def _is_settled(names: set[str], best: float, floor: Mapping[str, float], *, is_whole: bool) -> bool:
-    """Whether nothing can be cheaper than the best known of a group."""
-    is_single = is_whole and len(names) == 1
+def _is_settled(names: set[str], best: float, floor: Mapping[str, float], folds: Mapping[str, UnitFold]) -> bool:
+    """Whether nothing can be cheaper than the best known of a group; `folds` are those of all units, if there are."""
+    is_single = len(names) == 1 and all(n in folds and folds[n].gap <= NO_MORE for n in names)
     return is_single or best - sum(floor[n] for n in names) <= NO_MORE
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from foldfab.folding import basic
 from foldfab.folding.congruent import repertoire
-from foldfab.folding.group import Group
+from foldfab.folding.group import Group, learn
 from foldfab.folding.lessons import lessons_of, lessons_of_others, must_wait, out_of_the_box
 from foldfab.folding.master import Proposal
 from foldfab.folding.model import Chain
@@ -38,8 +39,10 @@ def played(
     for name in proposal.order:
         fold = _unit_played(group, scene, by_name[name], options, proposal, done) if holds else None
         if fold is None:
-            holds = False
             repaired = fold_unit(problem, scene, by_name[name])
+            if holds:
+                _learn_from_repair(group, scene, options, proposal, done, repaired)
+            holds = False
             if isinstance(repaired, Refusal):
                 return None, False
             fold = repaired
@@ -47,6 +50,20 @@ def played(
         scene = after(problem, scene, fold)
         done.add(name)
     return tuple(folds), holds
+
+
+def _learn_from_repair(
+    group: Group, scene: Scene, options: Mapping[str, Options], proposal: Proposal, done: set[str],
+    repaired: UnitFold | Refusal,
+) -> None:  # fmt: skip
+    """What else a unit has tried in vain, while all that was folded before it is as proposed."""
+    unit = repaired.unit
+    around = look(group.problem, scene, repertoire(group.problem, unit))
+    for clash, places in repaired.learned:
+        if all(place is None or place[0] in options[p].lanes for p, place in zip(unit.patches, places, strict=True)):
+            tried = {p: options[p].index(place) for p, place in zip(unit.patches, places, strict=True)}
+            other = replace(proposal, chosen={**proposal.chosen, **tried})
+            learn(group, lessons_of(group, scene, unit, around, options, other, done, clash))
 
 
 def _plain_chains(problem: Problem, unit: Unit, options: Mapping[str, Options], proposal: Proposal) -> list[Chain]:
@@ -67,11 +84,11 @@ def _unit_played(
     problem, own = group.problem, repertoire(group.problem, unit)
     around = look(problem, scene, own)
     if around.standing:
-        group.lessons += [must_wait(problem, unit, options, patch) for patch in sorted(around.standing)]
+        learn(group, (must_wait(problem, unit, options, patch) for patch in sorted(around.standing)))
         return None
     left = out_of_the_box(group, unit, around, options, proposal, done)
     if left:
-        group.lessons += left
+        learn(group, left)
         return None
     chosen = {p: options[p][proposal.chosen[p]] for p in unit.patches}
     result = realised(problem, scene, unit, around, chosen)
@@ -83,6 +100,6 @@ def _unit_played(
         return UnitFold(unit, chosen, reasons, *result, around.cluster, cost, weight, around.key)
     for patch, lanes in found.lanes.items():
         group.lanes[patch] += tuple(x for x in lanes if x not in group.lanes[patch])
-    group.lessons += lessons_of(group, scene, unit, around, options, proposal, done, result)
-    group.lessons += lessons_of_others(group, scene, unit, around, options, proposal, done, found)
+    learn(group, lessons_of(group, scene, unit, around, options, proposal, done, result))
+    learn(group, lessons_of_others(group, scene, unit, around, options, proposal, done, found))
     return None

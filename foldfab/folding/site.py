@@ -6,19 +6,22 @@ that meet in an edge need a gap between them. Cutting that gap costs nothing in 
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from foldfab.folding.anatomy import Face, faces
+from foldfab.folding.anatomy import RIM, Face, base_boxes, faces
 from foldfab.folding.model import Thickness
 from foldfab.geometry.arrays import Array
-from foldfab.geometry.boxes import Boxes, close_pairs, grown
+from foldfab.geometry.boxes import Boxes, close_pairs, grown, stacked
 from foldfab.geometry.rotation import cross
 from foldfab.scaffold.model import BasePatch, Patch, Scaffold
 
 EDGE_THICKNESSES = 2.0
 """Patches that overlap by more than this many K cross each other; the search has to shrink one of them at its cost."""
+PROBES = 5
+"""Points of a foot's line at which it is asked whether it stands on its plate."""
 SIDE_BY_SIDE = np.cos(np.radians(5.0))
 """Patches this parallel meet edge to edge; others meet edge to face."""
 
@@ -72,6 +75,34 @@ def slab(site: Site, thickness: Thickness) -> Boxes:
     normal = cross(site.along, direction)
     half = np.array([[site.panel / 2, float(np.ptp(site.span)) / 2, max(reach, 0.0)]])
     return Boxes(center[None], np.stack([normal, site.along, direction])[None], half)
+
+
+def plate_boxes(base: BasePatch, held: Iterable[Site], thickness: Thickness) -> Boxes:
+    """The plate of a base (n,), with what it needs below the feet of patches that stand beside its outlines.
+
+    So does a wall that a shelf meets with its edge.
+    """
+    plate, found = base_boxes(base, thickness), []
+    for site in held:
+        for end, name in ((0.0, site.anchor), (site.clear, site.far)):
+            if name == base.name:
+                foot = site.foot + np.tan(site.lean) * end * site.across
+                ends = foot[:2] + np.linspace(site.span[0], site.span[1], PROBES)[:, None] * site.along[:2]
+                if not _is_on(ends, plate):
+                    found.append((ends.mean(axis=0), site))
+    if not found:
+        return plate
+    center = np.array([[*middle, plate.center[0, 2]] for middle, _ in found])
+    axes = np.array([[site.across, site.along, cross(site.across, site.along)] for _, site in found])
+    half = [[site.panel / 2 + RIM, float(np.ptp(site.span)) / 2, plate.half[0, 2]] for _, site in found]
+    return stacked([plate, Boxes(center, axes, np.array(half))])
+
+
+def _is_on(points: Array, plate: Boxes) -> bool:
+    """Whether any of points (k, 2) lies on any box of a plate, seen from above."""
+    offset = points[:, None] - plate.center[:, :2]
+    reach = np.abs(np.einsum("nij,knj->kni", plate.axes[:, :2, :2], offset))
+    return bool((reach <= plate.half[:, :2]).all(axis=2).any())
 
 
 def _site(patch: Patch, importance: float, plates: dict[str, _Plate], thickness: Thickness) -> Site:

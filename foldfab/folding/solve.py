@@ -92,7 +92,8 @@ def _ordered(problem: Problem, choices: Mapping[str, Choice]) -> tuple[Ordered, 
     if problem.options.ordering == "greedy":
         bound = sum(floor.values()) if ordered.refusals else lower_bound(problem, scene, ordered, floor)
     else:
-        known = None if ordered.refusals else improved(problem, ordered, choices)
+        work = problem.options.time_limit - PLAYING * sum(problem.plays)
+        known = None if ordered.refusals else improved(problem, ordered, choices, work / PLAYING)
         work = problem.options.time_limit - PLAYING * sum(problem.plays)
         found, bound = optimal(problem, scene, known, floor, work)
         ordered = found or ordered

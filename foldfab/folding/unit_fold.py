@@ -14,7 +14,7 @@ import numpy as np
 from foldfab.folding import basic
 from foldfab.folding.basic import Option, Variant
 from foldfab.folding.congruent import repertoire
-from foldfab.folding.graph import Graph
+from foldfab.folding.graph import Graph, Lesson
 from foldfab.folding.model import Chain
 from foldfab.folding.press import Motion
 from foldfab.folding.problem import Problem
@@ -50,6 +50,10 @@ class UnitFold:
     """What the search minimises: the cost, with deletions counted many times."""
     seen: object
     """All that it depends on (`Surroundings.key`)."""
+    gap: float = 0.0
+    """By how much it may weigh more than the cheapest in these surroundings, where the work did not suffice to tell."""
+    learned: tuple[Lesson, ...] = ()
+    """What did not work in these surroundings."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,6 +72,8 @@ class Refusal:
 
     unit: Unit
     reason: str
+    learned: tuple[Lesson, ...] = ()
+    """What did not work in these surroundings."""
 
 
 def fold_unit(problem: Problem, scene: Scene, unit: Unit, *, in_place: bool = False) -> UnitFold | Refusal:
@@ -174,10 +180,13 @@ def _fold(
         if not isinstance(result, Clash):
             reasons = reasons_of(problem, own, found, chosen)
             cost = sum(o.cost for o in chosen.values())
-            return UnitFold(unit, chosen, reasons, *result, around.cluster, cost, graph.weight(picked), around.key)
+            return UnitFold(
+                unit, chosen, reasons, *result, around.cluster, cost, graph.weight(picked), around.key,
+                gap=float(sum(graph.gaps)), learned=tuple(graph.learned),
+            )  # fmt: skip
         why += [result.reason] if result.reason not in why else []
         graph.learn(picked, result)
-    return Refusal(unit, reason_against(problem, own, found, why))
+    return Refusal(unit, reason_against(problem, own, found, why), tuple(graph.learned))
 
 
 def _begun(

@@ -21,6 +21,8 @@ DENSE = 2**18
 """Up to this many pairs all bounds are compared at once; halving space would only cost time."""
 FEW = 2**12
 """Space is not halved further where this many pairs are left."""
+GAP_STEPS = 40
+"""Halvings of a gap: down to rounding."""
 WORTHWHILE = 0.8
 """Space is halved only where fewer than this share of the pairs is left to compare."""
 
@@ -78,6 +80,22 @@ def close_pairs(a: Boxes, b: Boxes) -> tuple[Indices, Indices]:
     i, j = near_pairs(bounds(a), bounds(b))
     hit = overlaps(a[i], b[j])
     return i[hit], j[hit]
+
+
+def gaps(a: Boxes, b: Boxes) -> Array:
+    """(n,) how far the boxes of two equally shaped flat collections are apart, mm, pair by pair; 0 where they overlap.
+
+    By how much both have to grow together to overlap, halved step by step: boxes that grow keep their corners, so
+    it is less than the distance where these are nearest.
+    """
+    low = np.zeros(len(a))
+    high = np.linalg.norm(a.center - b.center, axis=1) + PARALLEL
+    for _ in range(GAP_STEPS):
+        middle = (low + high) / 2
+        half = (middle / 2)[:, None]
+        hit = overlaps(Boxes(a.center, a.axes, a.half + half), Boxes(b.center, b.axes, b.half + half))
+        low, high = np.where(hit, low, middle), np.where(hit, middle, high)
+    return np.where(overlaps(a, b), 0.0, high)
 
 
 def near_pairs(a: tuple[Array, Array], b: tuple[Array, Array]) -> tuple[Indices, Indices]:

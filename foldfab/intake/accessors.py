@@ -11,7 +11,7 @@ from urllib.parse import unquote
 
 import numpy as np
 
-from foldfab.geometry.arrays import Array, Indices
+from foldfab.geometry.arrays import Array, Indices, handed
 from foldfab.intake.inside import inside
 from foldfab.intake.limits import check_vertices, content, fail
 
@@ -55,7 +55,7 @@ def floats(buffers: Buffers, index: Any) -> Array:
         values: Array = _values(buffers, accessor, kind, 3).astype(np.float64)
     if accessor.get("normalized") and kind != _FLOAT:
         values = np.maximum(values / np.iinfo(_TYPES[kind]).max, -1.0)
-    return values
+    return handed(values)
 
 
 def indices(buffers: Buffers, index: Any) -> Indices:

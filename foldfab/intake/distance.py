@@ -7,10 +7,13 @@ from itertools import product
 import numpy as np
 
 from foldfab.geometry.arrays import Array
+from foldfab.geometry.triangles import to_points
 from foldfab.recipe.model import Mesh
 
 _AT_ONCE = 1 << 18
 """Pairs of points and triangles that are compared at once."""
+_LOOKED_AT = 1 << 17
+"""Triangles that are looked at at once, so that large meshes take little memory."""
 _ROUNDING = 1e-9
 """Share of a distance that rounding may have made it too small."""
 _GRID = np.array(list(product((-1.0, 0.0, 1.0), repeat=3)))
@@ -28,52 +31,25 @@ def off_box(mesh: Mesh, center: Array, axes: Array, size: Array) -> float:
 def to_surface(points: Array, mesh: Mesh) -> Array:
     """(n,) distance of points (n, 3) to the nearest triangle, mm."""
     nearest = np.full(len(points), np.inf)
-    corners = _near(points, mesh.vertices[mesh.faces])
     step = max(1, _AT_ONCE // len(points))
-    for start in range(0, len(corners), step):
-        some = corners[start : start + step]
-        nearest = np.minimum(nearest, _squared(points, some).min(1))
+    for first in range(0, len(mesh.faces), _LOOKED_AT):
+        corners = _near(points, mesh.vertices[mesh.faces[first : first + _LOOKED_AT]], np.sqrt(nearest))
+        for start in range(0, len(corners), step):
+            some = corners[start : start + step]
+            nearest = np.minimum(nearest, to_points(points[:, None], some).min(1))
     found: Array = np.sqrt(nearest)
     return found
 
 
-def _near(points: Array, corners: Array) -> Array:
-    """The triangles (m, 3, 3) that may be the nearest to one of the points (n, 3).
+def _near(points: Array, corners: Array, nearest: Array) -> Array:
+    """The triangles (m, 3, 3) that may be nearer to one of the points (n, 3) than what was `nearest` (n,) so far.
 
     Nothing is nearer than its middle by more than its reach, and the nearest is no further than any middle.
     """
     middle = corners.mean(1)
     reach = np.sqrt(((corners - middle[:, None]) ** 2).sum(2).max(1))
     kept = np.zeros(len(corners), dtype=bool)
-    for point in points:
+    for point, most in zip(points, nearest, strict=True):
         away = np.sqrt(((middle - point) ** 2).sum(1))
-        kept |= away - reach <= away.min() * (1 + _ROUNDING)
+        kept |= away - reach <= min(most, away.min()) * (1 + _ROUNDING)
     return corners[kept]
-
-
-def _squared(points: Array, corners: Array) -> Array:
-    """(n, m) squared distances of points (n, 3) to triangles (m, 3, 3)."""
-    a = corners[:, 0]
-    first, second = corners[:, 1] - a, corners[:, 2] - a
-    normal = np.cross(first, second)
-    area = np.einsum("ij,ij->i", normal, normal)
-    offset = points[:, None] - a
-    with np.errstate(divide="ignore", invalid="ignore"):
-        height = np.einsum("nmj,mj->nm", offset, normal)
-        u = np.einsum("nmj,mj->nm", offset, np.cross(second, normal)) / area
-        v = np.einsum("nmj,mj->nm", offset, np.cross(normal, first)) / area
-        inside = (u >= 0) & (v >= 0) & (u + v <= 1) & (area > 0)
-        found = np.where(inside, height**2 / area, np.inf)
-    for index in range(3):
-        found = np.minimum(found, _to_edge(points, corners[:, index], corners[:, (index + 1) % 3]))
-    return found
-
-
-def _to_edge(points: Array, start: Array, end: Array) -> Array:
-    edge = end - start
-    length = np.maximum(np.einsum("ij,ij->i", edge, edge), 1e-300)
-    offset = points[:, None] - start
-    share = np.clip(np.einsum("nmj,mj->nm", offset, edge) / length, 0.0, 1.0)
-    rest = offset - share[:, :, None] * edge
-    found: Array = np.einsum("nmj,nmj->nm", rest, rest)
-    return found

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,9 +10,11 @@ from foldfab.errors import Problem, RecipeError
 from foldfab.intake.files import is_shapes
 from foldfab.intake.model import Wishes
 from foldfab.intake.scale import check
+from foldfab.recipe.build import Gathered
+from foldfab.recipe.edit import without
 from foldfab.recipe.find import find
 from foldfab.recipe.form import RecipeForm
-from foldfab.recipe.model import Part, Recipe
+from foldfab.recipe.model import Recipe
 from foldfab.recipe.read import read as read_recipe
 
 if TYPE_CHECKING:
@@ -39,7 +41,7 @@ def load(source: str | Path | build123d.Shape, wishes: Wishes) -> Recipe:
 
     named_files = False
 
-    def parts_of(form: RecipeForm, file: Path) -> tuple[tuple[Part, ...], tuple[str, ...]]:
+    def parts_of(form: RecipeForm, file: Path) -> Gathered:
         nonlocal named_files
         from foldfab.intake.read import parts_of as made
 
@@ -47,9 +49,10 @@ def load(source: str | Path | build123d.Shape, wishes: Wishes) -> Recipe:
         return made(form, file, wishes)
 
     recipe = read_recipe(path, parts_of)
-    if not named_files:
-        _refuse(wishes)
-    return recipe
+    if named_files:
+        return recipe
+    _refuse(replace(wishes, ignore=()))
+    return without(recipe, wishes.ignore) if wishes.ignore else recipe
 
 
 def _refuse(wishes: Wishes) -> None:

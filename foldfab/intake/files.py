@@ -10,12 +10,16 @@ from foldfab.intake.model import Shapes
 
 FORMATS = {
     ".step": "STEP", ".stp": "STEP", ".glb": "GLB", ".gltf": "glTF", ".obj": "OBJ", ".3mf": "3MF", ".stl": "STL",
+    ".urdf": "URDF", ".mjcf": "MJCF", ".xml": "MJCF",
 }  # fmt: skip
 """By the file's ending."""
 _OTHERS = (
-    ".blend", ".dae", ".dxf", ".f3d", ".fbx", ".fcstd", ".iges", ".igs", ".ply", ".skp", ".sldprt", ".usdz", ".wrl",
+    ".blend", ".dae", ".dxf", ".f3d", ".fbx", ".fcstd", ".iges", ".igs", ".ply", ".sdf", ".skp", ".sldprt", ".usdz",
+    ".wrl", ".xacro",
 )  # fmt: skip
 """What people have, too."""
+_ROBOTS = {"URDF", "MJCF"}
+"""Told apart by their reader, as both are called .xml."""
 _SNIFFED = 4096
 """Bytes looked at."""
 
@@ -43,9 +47,10 @@ def shapes(path: Path) -> Shapes:
 
 
 def _reader(name: str) -> Callable[[Path], Shapes]:
-    from foldfab.intake import gltf, obj, step, stl, threemf
+    from foldfab.intake import gltf, obj, robots, step, stl, threemf
 
     readers = {"STEP": step.read, "OBJ": obj.read, "3MF": threemf.read, "STL": stl.read}
+    readers |= {"URDF": robots.read, "MJCF": robots.read}
     return readers.get(name, gltf.read)
 
 
@@ -61,7 +66,7 @@ def _check_content(path: Path, name: str) -> None:
         # The reader says it better.
         return
     found = _sniffed(head)
-    if found is not None and found != name:
+    if found is not None and found != name and {found, name} != _ROBOTS:
         ending = next(ending for ending, other in FORMATS.items() if other == found)
         fail(path, f"is named as {name}, but it is a {found} file by its content; rename it to {ending}", "file")
 
@@ -77,6 +82,8 @@ def _sniffed(head: bytes) -> str | None:
         return "STEP"
     if text.startswith(b"{") and b'"asset"' in head:
         return "glTF"
+    if text.startswith(b"<"):
+        return "URDF" if b"<robot" in head else "MJCF" if b"<mujoco" in head else None
     if text.startswith(b"solid") and b"facet" in head:
         return "STL"
     return None

@@ -24,12 +24,16 @@ LARGEST_UNPACKED = 800_000_000
 MOST_EXPANDED = 100
 """Bytes unpacked for one packed; meshes as XML reach about 15."""
 DEEPEST_XML = 32
+LARGEST_DESCRIPTION = 20_000_000
+"""Bytes of a URDF or MJCF file, whose shapes lie in files of their own."""
 FARTHEST = 1e9
 """Units; furniture has no larger coordinates in any of them."""
 LONGEST_SECONDS = 120.0
 """For the reader of STEP files."""
 LARGEST_MEMORY = 4 << 30
 """Bytes of address space for the reader of STEP files, whose libraries take up one of it."""
+LARGEST_DATA = 850_000_000
+"""Bytes that it may fill; with what its libraries share it stays within 1 GB, as the other readers do at the limits."""
 
 
 def fail(path: Path | str, text: str, place: str = TOP) -> NoReturn:

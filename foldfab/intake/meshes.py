@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from foldfab.geometry.arrays import Array, Indices
+from foldfab.geometry.arrays import Array, Indices, handed
 from foldfab.intake.limits import FARTHEST, fail
 from foldfab.intake.model import Body
 from foldfab.recipe.model import Mesh
@@ -27,15 +27,15 @@ def body(path: Path | str, name: str, vertices: Array, faces: Indices) -> Body:
         fail(path, f"has a face that names a vertex beyond its {len(vertices)}; the file is damaged", where)
     used = np.zeros(len(vertices), dtype=bool)
     used[faces.reshape(-1)] = True
-    # Compared so that NaN is out of reach too.
-    wild = used & ~(np.abs(vertices) <= FARTHEST).all(1)
-    if wild.any():
-        first = int(np.argmax(wild))
-        seen = ", ".join(f"{value:g}" for value in vertices[first])
-        fail(path, f"has a vertex at ({seen}), which is no place for furniture; export it again", where)
+    # Compared so that NaN is out of reach too; all at once takes no memory, and is enough as a rule.
+    if len(vertices) and not (vertices.min() >= -FARTHEST and vertices.max() <= FARTHEST):
+        wild = used & ~(np.abs(vertices) <= FARTHEST).all(1)
+        if wild.any():
+            seen = ", ".join(f"{value:g}" for value in vertices[int(np.argmax(wild))])
+            fail(path, f"has a vertex at ({seen}), which is no place for furniture; export it again", where)
     if used.all():
         return Body(name, Mesh(vertices, faces))
-    return Body(name, Mesh(vertices[used], (np.cumsum(used) - 1)[faces]))
+    return Body(name, Mesh(handed(vertices[used]), handed((np.cumsum(used) - 1)[faces])))
 
 
 def product(outer: Array, inner: Array) -> Array:
@@ -50,14 +50,19 @@ def placed(mesh: Mesh, matrix: Array) -> Mesh:
     if (matrix == np.eye(4)).all():
         return mesh
     with np.errstate(over="ignore", invalid="ignore"):
-        return Mesh(np.nan_to_num(mesh.vertices @ matrix[:3, :3].T + matrix[:3, 3], nan=2 * FARTHEST), mesh.faces)
+        moved = mesh.vertices @ matrix[:3, :3].T
+        moved += matrix[:3, 3]
+        return Mesh(handed(np.nan_to_num(moved, copy=False, nan=2 * FARTHEST)), mesh.faces)
 
 
 def joined(meshes: list[Mesh]) -> Mesh:
     """All as one mesh."""
+    if len(meshes) == 1:
+        return meshes[0]
     starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])[:-1]
     vertices = np.concatenate([mesh.vertices for mesh in meshes])
-    return Mesh(vertices, np.concatenate([mesh.faces + start for mesh, start in zip(meshes, starts, strict=True)]))
+    faces = np.concatenate([mesh.faces + start for mesh, start in zip(meshes, starts, strict=True)])
+    return Mesh(handed(vertices), handed(faces))
 
 
 def shells(mesh: Mesh) -> list[Mesh]:
@@ -87,9 +92,13 @@ def distinct(rows: Array) -> tuple[Array, Indices]:
     order = np.lexsort(rows.T[::-1])
     ordered = rows[order]
     starts = np.concatenate([np.ones(min(1, len(rows)), dtype=bool), (ordered[1:] != ordered[:-1]).any(1)])
+    found = ordered[starts]
+    del ordered
+    count = np.cumsum(starts)
+    count -= 1
     which = np.empty(len(rows), dtype=np.int64)
-    which[order] = np.cumsum(starts) - 1
-    return ordered[starts], which
+    which[order] = count
+    return found, handed(which)
 
 
 def _welded(mesh: Mesh) -> Indices:

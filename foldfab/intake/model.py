@@ -45,3 +45,5 @@ class Wishes:
     """Whether shells of one body that do not touch are parts of their own."""
     smallest: float | None = None
     """mm; what is no longer than this is hardware and left out. None: a share of the furniture."""
+    ignore: tuple[str, ...] = ()
+    """Patterns of names that are left out."""

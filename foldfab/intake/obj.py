@@ -6,20 +6,24 @@ that matters here.
 
 from __future__ import annotations
 
+import io
 from array import array
 from collections import defaultdict
+from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
-from foldfab.geometry.arrays import Array
+from foldfab.geometry.arrays import Array, handed
 from foldfab.intake.limits import check_bodies, check_triangles, check_vertices, content, fail
 from foldfab.intake.meshes import body
 from foldfab.intake.model import Shapes
 
 _EVERY = 4096
 """Lines between two counts of what was read."""
+_SPREAD = 2
+"""A body's vertices stand together, as a rule; where they are spread this much, they are gathered."""
 _LONGEST_LINE = 100_000
 """Bytes."""
 
@@ -35,7 +39,7 @@ def read(path: Path) -> Shapes:
     thing, group = b"", b""
     faces = found[thing, group]
     triangles = 0
-    for number, line in enumerate(content(path).splitlines(), 1):
+    for number, line in enumerate(_lines(content(path)), 1):
         word, _, rest = line.strip().partition(b" ")
         try:
             if word == b"v":
@@ -55,6 +59,11 @@ def read(path: Path) -> Shapes:
     return _shapes(path, np.frombuffer(places).reshape(-1, 3), {key: part for key, part in found.items() if part})
 
 
+def _lines(data: bytes) -> Iterator[bytes]:
+    """One by one, as a list of them would take many times the file."""
+    return iter(io.BytesIO(data if b"\n" in data else data.replace(b"\r", b"\n")))
+
+
 def _count(path: Path, bodies: int, triangles: int, vertices: int) -> None:
     check_bodies(path, bodies)
     check_triangles(path, triangles)
@@ -70,11 +79,15 @@ def _shapes(path: Path, vertices: Array, found: dict[tuple[bytes, bytes], array[
     bodies = []
     for name, pieces in parts.items():
         corners = np.concatenate([np.frombuffer(piece, dtype=np.int64) for piece in pieces]).reshape(-1, 3)
-        used, renumbered = np.unique(corners, return_inverse=True)
+        low, high = int(corners.min()), int(corners.max())
         text = name.decode("utf-8", "replace")
-        if used[0] < 0 or used[-1] >= len(vertices):
+        if low < 0 or high >= len(vertices):
             fail(path, f"a face names a vertex beyond the {len(vertices)} there are; the file is damaged", "faces")
-        bodies.append(body(path, text, vertices[used], renumbered.reshape(-1, 3)))
+        if high - low < _SPREAD * corners.size:
+            bodies.append(body(path, text, vertices[low : high + 1], corners - low))
+            continue
+        used, renumbered = np.unique(corners, return_inverse=True)
+        bodies.append(body(path, text, handed(vertices[used]), renumbered.reshape(-1, 3)))
     return Shapes(tuple(bodies))
 
 

@@ -7,16 +7,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from foldfab.errors import Problem, RecipeError
+from foldfab.intake.contacts import contacts, told
 from foldfab.intake.files import shapes
 from foldfab.intake.inside import inside
 from foldfab.intake.limits import fail
 from foldfab.intake.meshes import joined
 from foldfab.intake.model import Body, Shapes, Wishes
-from foldfab.intake.understand import Grouping, fits, named, parts
-from foldfab.recipe.build import box_part, flagged
+from foldfab.intake.understand import Grouping, Understood, named, parts
+from foldfab.recipe.build import Gathered, box_part, flagged
+from foldfab.recipe.edit import check_patterns
 from foldfab.recipe.form import MILLIMETRES, PartForm, RecipeForm
 from foldfab.recipe.model import FoldOptions, Part, PrintOptions, Recipe
-from foldfab.recipe.names import folder_name, folder_name_problem, same_name
+from foldfab.recipe.names import fits, folder_name, folder_name_problem, same_name
 from foldfab.recipe.printers import DEFAULT_PRINTER
 from foldfab.recipe.problems import shown
 
@@ -50,52 +52,62 @@ def from_cad(shape: build123d.Shape, wishes: Wishes) -> Recipe:
     return _recipe(name, name, read_solids(shape, name), wishes)
 
 
-def parts_of(form: RecipeForm, path: Path, wishes: Wishes) -> tuple[tuple[Part, ...], tuple[str, ...]]:
+def parts_of(form: RecipeForm, path: Path, wishes: Wishes) -> Gathered:
     """The parts of a recipe that names files of shapes: those of its model with their flags, and those of its own.
 
     Raises:
         RecipeError: a file is absent, outside the recipe's folder or damaged, or a part is not in the model.
     """
-    found: list[Part] = []
-    notes: list[str] = []
     default = form.units if "units" in form.model_fields_set else None
+    own = [part for part in form.parts if part.box is not None or part.mesh is not None]
+    held, names = Understood((), (), ()), [part.name for part in own]
     if form.model is not None:
-        found += _of_model(path, form, replace(wishes, default_units=default), notes)
-    for index, own in enumerate(form.parts):
-        if own.box is not None:
-            found.append(box_part(own, own.box, MILLIMETRES[form.units], form.fold.shrink_steps))
-        elif own.mesh is not None:
+        held, bodies = _of_model(path, form, replace(wishes, default_units=default))
+        names += bodies
+    check_patterns(wishes.ignore, names)
+    found, notes = list(held.parts), list(held.notes)
+    for index, part in enumerate(form.parts):
+        if any(fits(part.name, pattern) for pattern in wishes.ignore):
+            continue
+        if part.box is not None:
+            found.append(box_part(part, part.box, MILLIMETRES[form.units], form.fold.shrink_steps))
+        elif part.mesh is not None:
             asked = replace(wishes, default_units=form.units, split_shells=False, smallest=0.0)
-            part = _of_mesh(inside(path, own.mesh, f"parts[{index}].mesh"), own.name, asked, notes)
-            found.append(flagged(part, own, form.fold.shrink_steps))
+            made = _of_mesh(inside(path, part.mesh, f"parts[{index}].mesh"), part.name, asked, notes)
+            found.append(flagged(made, part, form.fold.shrink_steps))
+    if not found:
+        fail(path, "nothing is left of it; ignore less")
     _check_names(path, found)
-    return tuple(found), tuple(notes)
+    met = contacts(tuple(found), held.hardware)
+    return Gathered(tuple(found), (*notes, *told(met)), met)
 
 
-def _of_model(path: Path, form: RecipeForm, wishes: Wishes, notes: list[str]) -> list[Part]:
+def _of_model(path: Path, form: RecipeForm, wishes: Wishes) -> tuple[Understood, list[str]]:
+    """The model's parts with their flags, and the names of its bodies."""
     file = inside(path, str(form.model), "model")
-    bodies, told = named(file, shapes(file), wishes)
+    bodies, first = named(file, shapes(file), wishes)
+    names = [body.name for body in bodies]
     flags = {i: part for i, part in enumerate(form.parts) if part.box is None and part.mesh is None}
-    _check_flags(path, flags, [body.name for body in bodies])
+    _check_flags(path, flags, names)
     merged = {part.name: part.merge for part in flags.values() if part.merge is not None}
-    ignored = tuple(part.name for part in flags.values() if part.ignore)
+    ignored = (*wishes.ignore, *(part.name for part in flags.values() if part.ignore))
     kept = tuple(part.name for part in flags.values() if not part.ignore)
-    found, more = parts(file, bodies, wishes, Grouping(ignored, tuple(merged.items()), kept))
-    notes += [*told, *more]
+    held = parts(file, bodies, wishes, Grouping(ignored, tuple(merged.items()), kept))
+    found = held.parts
     for flag in flags.values():
         pattern = merged.get(flag.name, flag.name)
         found = tuple(flagged(p, flag, form.fold.shrink_steps) if fits(p.name, pattern) else p for p in found)
-    return list(found)
+    return replace(held, parts=found, notes=(*first, *held.notes)), names
 
 
 def _of_mesh(file: Path, name: str, wishes: Wishes, notes: list[str]) -> Part:
     """All bodies of a file as one part."""
     held = shapes(file)
     whole = Body(name, joined([body.mesh for body in held.bodies]))
-    bodies, told = named(file, replace(held, bodies=(whole,)), wishes)
-    found, more = parts(file, bodies, wishes, Grouping())
-    notes += [f"{name}: {note}" for note in (*told, *more)]
-    return replace(found[0], name=name)
+    bodies, first = named(file, replace(held, bodies=(whole,)), wishes)
+    found = parts(file, bodies, wishes, Grouping())
+    notes += [f"{name}: {note}" for note in (*first, *found.notes)]
+    return replace(found.parts[0], name=name)
 
 
 def _check_flags(path: Path, flags: dict[int, PartForm], names: list[str]) -> None:
@@ -123,13 +135,17 @@ def _check_names(path: Path, found: list[Part]) -> None:
 
 def _recipe(name: str, source: str, held: Shapes, wishes: Wishes) -> Recipe:
     bodies, notes = named(source, held, wishes)
-    found, more = parts(source, bodies, wishes, Grouping())
+    check_patterns(wishes.ignore, [body.name for body in bodies])
+    found = parts(source, bodies, wishes, Grouping(ignored=wishes.ignore))
+    met = contacts(found.parts, found.hardware)
     return Recipe(
         name=name if folder_name_problem(name) is None else folder_name(name),
         direction=None,
-        parts=found,
+        parts=found.parts,
         fold=FoldOptions(),
         print=PrintOptions(printer=DEFAULT_PRINTER),
         source=source,
-        notes=(*notes, *more),
+        notes=(*notes, *found.notes, *told(met)),
+        touching=tuple(sorted(met.touching)),
+        apart=tuple(sorted(met.apart)),
     )

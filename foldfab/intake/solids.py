@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from foldfab.errors import MissingLibraryError
+from foldfab.errors import MissingLibraryError, RecipeError
 from foldfab.geometry.arrays import Array, Indices
 from foldfab.intake.limits import check_bodies, check_depth, check_nodes, check_triangles, fail
 from foldfab.intake.meshes import body
@@ -27,6 +27,8 @@ COARSEST = 0.05
 """mm; triangles are no further than this from a curved face."""
 TURN = 0.3
 """Radians between the triangles of a curved face."""
+_ELSEWHERE = frozenset({"StepBasic_DocumentFile", "StepAP214_AppliedExternalIdentificationAssignment"})
+"""Without these in a file the kernel follows no reference out of it."""
 _SYSTEM_LIBRARY = re.compile(r"\blib[\w+-]+\.so[.\d]*")
 
 Placed = tuple[str, Any]
@@ -126,14 +128,25 @@ def _transfer(path: Path, document: Any) -> None:
     reader = STEPCAFControl_Reader()
     reader.SetNameMode(True)
     try:
-        is_read = reader.ReadFile(str(path)) == IFSelect_RetDone and reader.Transfer(document)
-    except MemoryError:
+        is_read = reader.ReadFile(str(path)) == IFSelect_RetDone
+        if is_read:
+            # Transferring reads what is referred to, wherever it lies.
+            _require_whole(path, reader.Reader().Model())
+            is_read = reader.Transfer(document)
+    except (MemoryError, RecipeError):
         raise
     except Exception as error:
         # The kernel's exceptions have no common base of their own.
         fail(path, f"is no STEP file that can be read ({' '.join(str(error).split())[:120] or 'it is damaged'})")
     if not is_read:
         fail(path, "is no STEP file that can be read; it is truncated or damaged, export it again")
+
+
+def _require_whole(path: Path, model: Any) -> None:
+    """Raises: RecipeError: the file names files that hold a part of it."""
+    kinds = {model.Value(index).DynamicType().Name() for index in range(1, model.NbEntities() + 1)}
+    if not kinds.isdisjoint(_ELSEWHERE):
+        fail(path, "refers to other files; export the furniture as one STEP file")
 
 
 def _labels(fill: Any) -> list[Any]:

@@ -18,6 +18,8 @@ from foldfab.intake.meshes import body
 from foldfab.intake.model import Shapes
 from foldfab.intake.step_process import MISSING, REFUSED
 
+_ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+"""Threads of numpy's libraries take memory of their own, and do nothing here."""
 _PACKAGES = Path(__file__).resolve().parents[2]
 
 
@@ -36,7 +38,7 @@ def read(path: Path) -> Shapes:
     try:
         run = subprocess.run(
             command, stdin=subprocess.DEVNULL, capture_output=True, timeout=LONGEST_SECONDS, check=False,
-            env=os.environ | {"PYTHONPATH": paths},
+            env=os.environ | {"PYTHONPATH": paths} | _ONE_THREAD,
         )  # fmt: skip
     except subprocess.TimeoutExpired:
         fail(path, f"takes longer than {LONGEST_SECONDS:.0f} s to read; export only the furniture, or a coarser mesh")

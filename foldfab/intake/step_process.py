@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from foldfab.errors import MissingLibraryError, RecipeError
-from foldfab.intake.limits import LARGEST_MEMORY, LONGEST_SECONDS
+from foldfab.intake.limits import LARGEST_DATA, LARGEST_MEMORY, LONGEST_SECONDS
 
 REFUSED, MISSING = "refused", "missing"
 """What a message is packed as: the file holds nothing of use; build123d is not there."""
@@ -57,6 +57,7 @@ def _limit() -> None:
     except ImportError:
         return
     resource.setrlimit(resource.RLIMIT_AS, (LARGEST_MEMORY, LARGEST_MEMORY))
+    resource.setrlimit(resource.RLIMIT_DATA, (LARGEST_DATA, LARGEST_DATA))
     resource.setrlimit(resource.RLIMIT_CPU, (int(LONGEST_SECONDS), int(LONGEST_SECONDS) + 5))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 

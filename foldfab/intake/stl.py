@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from foldfab.geometry.arrays import Array
+from foldfab.geometry.arrays import Array, handed
 from foldfab.intake.limits import check_bodies, check_triangles, content, fail
 from foldfab.intake.meshes import body, distinct, joined
 from foldfab.intake.model import Body, Shapes
@@ -67,7 +67,7 @@ def _binary(path: Path, data: bytes, count: int) -> tuple[Body, ...]:
     corners = np.frombuffer(data, _TRIANGLE, count, _HEAD)["corners"]
     # A signalling NaN is told of when it is cast; which vertex it is, is said below.
     with np.errstate(invalid="ignore"):
-        return (_soup(path, "", corners.reshape(-1, 3).astype(np.float64)),)
+        return (_soup(path, "", corners.reshape(-1, 3)),)
 
 
 def _text(path: Path, data: bytes) -> tuple[Body, ...]:
@@ -100,5 +100,6 @@ def _numbers(path: Path, corners: list[tuple[bytes, bytes, bytes]]) -> Array:
 
 def _soup(path: Path, name: str, corners: Array) -> Body:
     """Triangles of three vertices each, with those that are the same made one."""
-    vertices, index = distinct(np.where(np.isnan(corners), np.inf, corners))
-    return body(path, name, vertices, index.reshape(-1, 3))
+    is_none = np.isnan(corners)
+    vertices, index = distinct(np.where(is_none, np.inf, corners) if is_none.any() else corners)
+    return body(path, name, handed(vertices.astype(np.float64)), index.reshape(-1, 3))

@@ -5,30 +5,20 @@ from __future__ import annotations
 from array import array
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
-from typing import NoReturn, Protocol
-from xml.parsers.expat import ExpatError, ParserCreate
 
 import numpy as np
 
 from foldfab.geometry.arrays import Array, Indices
 from foldfab.intake.limits import DEEPEST_XML, check_nodes, check_triangles, check_vertices, fail
+from foldfab.intake.markup import Attributes, Stream
+from foldfab.intake.markup import parse as read_xml
 
-_PIECE = 1 << 16
-"""Bytes given to the parser at once."""
 _EVERY = 4096
 """Triangles or vertices between two counts."""
 _SHOWN = ("model", "solidsupport", "surface")
 """Types of objects that are furniture; supports are not."""
-
-Attributes = dict[str, str]
-
-
-class Stream(Protocol):
-    """Anything that bytes are read from."""
-
-    def read(self, count: int) -> bytes:
-        """At most `count` bytes more; none at the end."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,7 +58,6 @@ class _State:
 
     path: Path
     unit: str = "millimeter"
-    depth: int = 0
     current: Attributes | None = None
     places: array[float] = field(default_factory=lambda: array("d"))
     corners: array[int] = field(default_factory=lambda: array("q"))
@@ -86,41 +75,20 @@ def parse(path: Path, stream: Stream) -> ModelFile:
         RecipeError: it is not XML, has a document type, is damaged or too large.
     """
     state = _State(path)
-    parser = ParserCreate()
-    parser.StartElementHandler = lambda name, given: _start(state, name, given)
-    parser.EndElementHandler = lambda name: _end(state, name)
-    parser.StartDoctypeDeclHandler = lambda *_: _refuse(path)
-    parser.EntityDeclHandler = lambda *_: _refuse(path)
-    try:
-        while piece := stream.read(_PIECE):
-            parser.Parse(piece, False)
-        parser.Parse(b"", True)
-    except ExpatError as error:
-        fail(path, f"its model is not XML ({error}); the file is truncated or damaged", "3dmodel.model")
-    except (ValueError, OverflowError, KeyError) as error:
-        fail(path, f"has something else where a number should be ({str(error)[:60]})", _where(parser.CurrentLineNumber))
+    read_xml(
+        path, stream, partial(_start, state), partial(_end, state),
+        kind="3MF", place="3dmodel.model", deepest=DEEPEST_XML,
+    )  # fmt: skip
     return ModelFile(state.unit, state.objects, tuple(state.items))
 
 
-def _refuse(path: Path) -> NoReturn:
-    fail(path, "declares a document type, which no 3MF does; it is refused")
-
-
-def _where(line: int) -> str:
-    return f"3dmodel.model, line {line}"
-
-
 def _start(state: _State, name: str, given: Attributes) -> None:
-    state.depth += 1
-    if state.depth > DEEPEST_XML:
-        fail(state.path, f"is nested more than {DEEPEST_XML} deep, which no 3MF is")
     handler = _HANDLERS.get(name.rpartition(":")[2])
     if handler is not None:
         handler(state, given)
 
 
 def _end(state: _State, name: str) -> None:
-    state.depth -= 1
     if name.rpartition(":")[2] == "object" and state.current is not None:
         _finish(state, state.current)
 

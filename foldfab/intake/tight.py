@@ -8,7 +8,7 @@ taken instead: symmetric and round parts have many least boxes, and a file's noi
 
 from __future__ import annotations
 
-from itertools import permutations
+from itertools import permutations, product
 
 import numpy as np
 
@@ -48,6 +48,8 @@ def hull(points: Array) -> tuple[Array, Array]:
     principal, reach = _principal(points)
     if reach[0] <= 0 or reach[1] <= FLAT * reach[0]:
         return points[_ends(points @ principal[0])], np.zeros((0, 3))
+    if len(points) > _MANY:
+        points = _outer(points)
     try:
         if reach[2] <= FLAT * reach[0]:
             return points[ConvexHull(points @ principal[:2].T).vertices], principal[2:]
@@ -57,6 +59,24 @@ def hull(points: Array) -> tuple[Array, Array]:
     corners = found.points[found.simplices]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     return points[found.vertices], _sides(found.equations[:, :3], np.linalg.norm(across, axis=1))
+
+
+def _outer(points: Array) -> Array:
+    """The points (k, 3) that do not lie well within those that lie outermost in some directions (Akl and Toussaint).
+
+    What is within is no corner of the hull, and a hull of fewer points takes less time and memory.
+    """
+    from scipy.spatial import ConvexHull, QhullError
+
+    size = np.ptp(points, axis=0)
+    ways = [np.array(way) / size for way in product((-1, 0, 1), repeat=3) if way > (0, 0, 0)] if size.all() else []
+    try:
+        planes = ConvexHull(points[sorted({end for way in ways for end in _ends(points @ way)})]).equations
+    except (QhullError, ValueError):
+        return points
+    limit = -FLAT * float(size.max())
+    runs = (points[start : start + _MANY] for start in range(0, len(points), _MANY))
+    return np.concatenate([run[(run @ planes[:, :3].T + planes[:, 3]).max(1) > limit] for run in runs])
 
 
 def least(corners: Array, normals: Array) -> Frame:
@@ -96,7 +116,8 @@ def fitted(corners: Array, axes: Frame) -> tuple[Array, Array]:
 
 def volume(corners: Array, axes: Frame) -> float:
     """Of the box with these axes; a sheet's counts as if it had some thickness."""
-    size = np.ptp(corners @ axes.T, axis=0)
+    # Along rows, which numpy is fastest at.
+    size = np.ptp(axes @ corners.T, axis=1)
     return float(np.maximum(size, FLAT * size.max()).prod())
 
 
@@ -143,7 +164,8 @@ def _principal(points: Array) -> tuple[Frame, Array]:
     few = points if len(points) <= _MANY else points[:: len(points) // _MANY]
     centred = few - few.mean(0)
     axes = np.linalg.eigh(centred.T @ centred)[1].T[::-1]
-    reach = np.ptp(points @ axes.T, axis=0)
+    # One by one, as all at once would take as much memory as the points.
+    reach = np.array([np.ptp(points @ axis) for axis in axes])
     order = np.argsort(-reach, kind="stable")
     axes = axes[order]
     axes[2] = np.cross(axes[0], axes[1])
@@ -189,8 +211,8 @@ def _outermost(corners: Array, normals: Array) -> Array:
     height = 1 - (2 * np.arange(_FEW) + 1) / _FEW
     across = np.sqrt(1 - height**2)
     spread = np.stack([across * np.cos(turn), across * np.sin(turn), height], axis=1)
-    along = corners @ np.concatenate([spread, normals, -normals]).T
-    return np.unique(np.argmax(along / np.ptp(corners, axis=0).max(), axis=0))
+    along = np.concatenate([spread, normals, -normals]) @ corners.T
+    return np.unique(np.argmax(along, axis=1))
 
 
 def _refined(corners: Array, frame: Frame) -> Frame:

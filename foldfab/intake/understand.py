@@ -2,36 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
 
 from foldfab.geometry.arrays import Array
 from foldfab.intake.distance import off_box
+from foldfab.intake.hardware import Sizes, sizes
 from foldfab.intake.limits import check_bodies, fail
 from foldfab.intake.meshes import joined, shells
 from foldfab.intake.model import Body, Shapes, Wishes
 from foldfab.intake.naming import NAMELESS, is_nameless, part_name, unique
+from foldfab.intake.notes import listed, note
+from foldfab.intake.outline import Outline, main_axes, outline
 from foldfab.intake.scale import check, in_millimetres
-from foldfab.intake.tight import fitted, hull, least, main_frame, settled
+from foldfab.intake.tight import fitted, settled
 from foldfab.recipe.form import FARTHEST, SMALLEST_SIZE
 from foldfab.recipe.model import Mesh, Part
+from foldfab.recipe.names import fits
 
-HARDWARE = 0.02
-"""A body whose longest side is less than this share of the furniture's is hardware: screws, pins, glides."""
 THINNEST = 1.0
 """mm; a sheet without thickness gets this one."""
 IS_BOX = 0.05
 """mm; a part that is no further off its box is one."""
 WORTH_SAYING = 0.02
 """A part further off its box than this share of its longest side is spoken of."""
+LOST = 3
+"""Two parts in one place may have been drawn twice; so many have lost their places."""
 _DIGITS = 4
 """Of places and sizes, mm: below the noise of single precision at a few metres."""
-_MOST_TOLD = 12
-"""More names than these are counted, not listed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,12 +48,14 @@ class Grouping:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Outline:
-    """A body's hull, and its smallest box."""
+class Understood:
+    """What was made of bodies."""
 
-    body: Body
-    corners: Array
-    axes: Array
+    parts: tuple[Part, ...]
+    notes: tuple[str, ...]
+    """What had to be supposed or left out."""
+    hardware: tuple[Mesh, ...]
+    """What was left out because it is small, mm."""
 
 
 def named(path: Path | str, shapes: Shapes, wishes: Wishes) -> tuple[list[Body], tuple[str, ...]]:
@@ -66,29 +69,24 @@ def named(path: Path | str, shapes: Shapes, wishes: Wishes) -> tuple[list[Body],
     return _named(path, scaled.bodies, wishes.split_shells), scaled.notes
 
 
-def parts(
-    path: Path | str, bodies: list[Body], wishes: Wishes, grouping: Grouping
-) -> tuple[tuple[Part, ...], tuple[str, ...]]:
-    """The parts that named bodies make, and notes on what had to be supposed or left out.
+def parts(path: Path | str, bodies: list[Body], wishes: Wishes, grouping: Grouping) -> Understood:
+    """The parts that named bodies make.
 
     Raises:
-        RecipeError: nothing is left, or it is too large to be furniture.
+        RecipeError: nothing is left, it is too large to be furniture, or many stand in one place.
     """
     notes: list[str] = []
     bodies = _merged(_without(bodies, grouping.ignored, notes), grouping.merged)
     if not bodies:
         fail(path, "nothing is left of it; ignore less")
-    bodies = _without_hardware(bodies, wishes.smallest, grouping, notes)
-    outlines = [outline for outline in map(_outline, bodies) if outline is not None]
-    _tell(notes, "without area, left out", {b.name for b in bodies} - {outline.body.name for outline in outlines})
+    measured = sizes(bodies, wishes.smallest)
+    bodies, hardware = _without_hardware(bodies, measured, grouping, notes)
+    known = measured.outlines
+    outlines = [found for b in bodies if (found := known[b.name] if b.name in known else outline(b)) is not None]
+    note(notes, "without area, left out", {b.name for b in bodies} - {found.body.name for found in outlines})
     if not outlines:
         fail(path, "nothing in it has an area")
-    return _boxed(path, outlines, notes), tuple(notes)
-
-
-def fits(name: str, pattern: str) -> bool:
-    """Whether a part's name fits a pattern with * and ?, capitals and small letters being the same."""
-    return fnmatchcase(name.casefold(), pattern.casefold())
+    return Understood(_boxed(path, outlines, notes), tuple(notes), tuple(body.mesh for body in hardware))
 
 
 def _named(path: Path | str, bodies: tuple[Body, ...], split: bool) -> list[Body]:
@@ -106,7 +104,7 @@ def _named(path: Path | str, bodies: tuple[Body, ...], split: bool) -> list[Body
 
 def _without(bodies: list[Body], ignored: tuple[str, ...], notes: list[str]) -> list[Body]:
     gone = {body.name for body in bodies if any(fits(body.name, pattern) for pattern in ignored)}
-    _tell(notes, "ignored as asked", gone)
+    note(notes, "ignored as asked", gone)
     return [body for body in bodies if body.name not in gone]
 
 
@@ -119,65 +117,54 @@ def _merged(bodies: list[Body], merged: tuple[tuple[str, str], ...]) -> list[Bod
     return [Body(name, joined([body.mesh for body in some])) for name, some in groups.items()]
 
 
-def _without_hardware(bodies: list[Body], smallest: float | None, grouping: Grouping, notes: list[str]) -> list[Body]:
+def _without_hardware(
+    bodies: list[Body], measured: Sizes, grouping: Grouping, notes: list[str]
+) -> tuple[list[Body], list[Body]]:
+    """What is left, and what is not."""
     kept = (*grouping.kept, *(name for _, name in grouping.merged))
-    low = np.array([body.mesh.vertices.min(0) for body in bodies])
-    high = np.array([body.mesh.vertices.max(0) for body in bodies])
-    limit = HARDWARE * float((high.max(0) - low.min(0)).max()) if smallest is None else smallest
-    is_small = (np.linalg.norm(high - low, axis=1) <= limit).tolist()
-    small = {body.name for body, small in zip(bodies, is_small, strict=True) if small}
-    gone = {name for name in small if not any(fits(name, pattern) for pattern in kept)}
-    _tell(notes, f"no longer than {limit:.4g} mm, left out as hardware (--smallest)", gone)
-    return [body for body in bodies if body.name not in gone]
+    gone = {name for name in measured.small if not any(fits(name, pattern) for pattern in kept)}
+    note(notes, f"no longer than {measured.limit:.4g} mm, left out as hardware (--smallest)", gone)
+    return [body for body in bodies if body.name not in gone], [body for body in bodies if body.name in gone]
 
 
-def _outline(body: Body) -> _Outline | None:
-    """None where it has no area."""
-    corners, normals = hull(body.mesh.vertices)
-    return _Outline(body, corners, least(corners, normals)) if len(normals) else None
-
-
-def _boxed(path: Path | str, outlines: list[_Outline], notes: list[str]) -> tuple[Part, ...]:
-    main = main_frame([o.corners for o in outlines], [o.axes for o in outlines])
+def _boxed(path: Path | str, outlines: list[Outline], notes: list[str]) -> tuple[Part, ...]:
+    main = main_axes(outlines)
     off: dict[str, float] = {}
     thin: list[str] = []
     found = []
-    for outline in outlines:
-        axes = settled(outline.corners, outline.axes, main)
-        center, size = fitted(outline.corners, axes)
+    for one in outlines:
+        axes = settled(one.corners, one.axes, main)
+        center, size = fitted(one.corners, axes)
         if max(np.abs(center).max(), size.max()) > FARTHEST:
-            fail(path, f"reaches further than {FARTHEST:.0f} mm; is the unit right? (--units)", outline.body.name)
-        distance = off_box(outline.body.mesh, center, axes, size)
+            fail(path, f"reaches further than {FARTHEST:.0f} mm; is the unit right? (--units)", one.body.name)
+        distance = off_box(one.body.mesh, center, axes, size)
         if distance > WORTH_SAYING * size.max():
-            off[outline.body.name] = distance
+            off[one.body.name] = distance
         if size.min() < SMALLEST_SIZE:
-            thin.append(outline.body.name)
-        found.append(_part(outline.body.name, center, size, axes, outline.body.mesh if distance > IS_BOX else None))
-    _tell(notes, f"sheets without thickness, taken as {THINNEST:g} mm thick", thin)
+            thin.append(one.body.name)
+        found.append(_part(one.body.name, center, size, axes, one.body.mesh if distance > IS_BOX else None))
+    note(notes, f"sheets without thickness, taken as {THINNEST:g} mm thick", thin)
     if off:
         told = [f"{name} {distance:.3g} mm" for name, distance in sorted(off.items(), key=lambda item: -item[1])]
-        _tell(notes, "no boxes, taken as their boxes, which are off by", told, is_sorted=True)
-    _tell(notes, "stand in the very same place, as if the file had lost where they belong", _stacked(found))
+        note(notes, "no boxes, taken as their boxes, which are off by", told, is_sorted=True)
+    stacked = _stacked(found)
+    if max(map(len, stacked), default=0) >= LOST:
+        names = sorted({name for names in stacked for name in names})
+        text = f"{listed(names)} stand in the very same place: the file has lost where they belong"
+        fail(path, f"{text}; move them apart and export it again, or leave out all but one (--ignore NAME)")
+    note(notes, "stand in the very same place, as if the file had lost where they belong", chain(*stacked))
     return tuple(found)
 
 
-def _stacked(found: list[Part]) -> set[str]:
-    """The names of parts whose box is that of another part."""
+def _stacked(found: list[Part]) -> list[list[str]]:
+    """The names of parts that have the same box."""
     places: dict[bytes, list[str]] = {}
     for part in found:
         key = np.round(np.concatenate([part.center, part.size, part.axes.reshape(-1)]), 3) + 0.0
         places.setdefault(key.tobytes(), []).append(part.name)
-    return {name for names in places.values() if len(names) > 1 for name in names}
+    return [names for names in places.values() if len(names) > 1]
 
 
 def _part(name: str, center: Array, size: Array, axes: Array, shape: Mesh | None) -> Part:
     thick: Array = np.where(size < SMALLEST_SIZE, THINNEST, size)
     return Part(name, np.round(center, _DIGITS) + 0.0, np.round(thick, _DIGITS), axes, shape=shape)
-
-
-def _tell(notes: list[str], what: str, names: Iterable[str], is_sorted: bool = False) -> None:
-    """Adds a note on the parts of these names, where there are any."""
-    told = list(names) if is_sorted else sorted(names)
-    if told:
-        rest = f" and {len(told) - _MOST_TOLD} more" if len(told) > _MOST_TOLD else ""
-        notes.append(f"{what}: {'; '.join(told[:_MOST_TOLD])}{rest}")

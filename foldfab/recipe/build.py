@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from foldfab.geometry.arrays import Array
 from foldfab.recipe.clearance import profile
+from foldfab.recipe.contacts import BY_BOXES, Contacts, beside, resolved
 from foldfab.recipe.form import (
     MILLIMETRES,
     BoxForm,
@@ -28,24 +29,43 @@ _EXACT = 1e-12
 _QUARTER_TURN = 1e-9
 
 
-def build(form: RecipeForm, name: str, source: str, parts: tuple[Part, ...], notes: tuple[str, ...] = ()) -> Recipe:
-    """The recipe that a valid form describes, with the parts that were made of it."""
+@dataclass(frozen=True, slots=True)
+class Gathered:
+    """The parts of a recipe, whatever files they came from."""
+
+    parts: tuple[Part, ...]
+    notes: tuple[str, ...] = ()
+    """What had to be supposed or left out."""
+    contacts: Contacts = BY_BOXES
+    """What was found out about which of them touch."""
+
+
+def build(form: RecipeForm, name: str, source: str, gathered: Gathered) -> Recipe:
+    """The recipe that a valid form describes, with the parts that were made of it.
+
+    Raises:
+        RecipeError: what it states about contacts fits no parts.
+    """
+    stated = resolved(form.touching, form.apart, gathered.parts, source)
+    contacts = beside(stated, gathered.contacts)
     return Recipe(
         name=name,
         direction=unit_direction(form.direction),
-        parts=parts,
+        parts=gathered.parts,
         fold=_fold(form.fold),
         print=build_print(form.print),
         about=form.about,
         source=source,
-        notes=notes,
+        notes=gathered.notes,
+        touching=tuple(sorted(contacts.touching)),
+        apart=tuple(sorted(contacts.apart)),
     )
 
 
-def boxes(form: RecipeForm) -> tuple[Part, ...]:
+def boxes(form: RecipeForm) -> Gathered:
     """The parts of a form all of whose parts are boxes."""
     factor, steps = MILLIMETRES[form.units], form.fold.shrink_steps
-    return tuple(box_part(part, part.box, factor, steps) for part in form.parts if part.box is not None)
+    return Gathered(tuple(box_part(part, part.box, factor, steps) for part in form.parts if part.box is not None))
 
 
 def unit_direction(direction: str | list[float]) -> Array | None:

@@ -15,7 +15,7 @@ from foldfab.recipe.build import build_print, unit_direction
 from foldfab.recipe.clearance import profile
 from foldfab.recipe.form import Direction, FoldForm, Form, PrintForm
 from foldfab.recipe.model import USUAL_THICKNESS, Part, Pattern, Printer, PrintOptions, Recipe
-from foldfab.recipe.names import same_name
+from foldfab.recipe.names import fits, same_name
 from foldfab.recipe.patterns import hinges_problem, rigid_problem, window_problem
 from foldfab.recipe.printers import printer as find_printer
 from foldfab.recipe.problems import problems_of, shown
@@ -146,6 +146,29 @@ def _check(form: type[Form], given: dict[str, Any]) -> list[Problem]:
     return []
 
 
+def without(recipe: Recipe, patterns: Collection[str]) -> Recipe:
+    """The recipe without the parts whose names fit a pattern.
+
+    Raises:
+        RecipeError: a pattern fits no part, or all are gone.
+    """
+    check_patterns(patterns, [part.name for part in recipe.parts])
+    parts = tuple(part for part in recipe.parts if not any(fits(part.name, pattern) for pattern in patterns))
+    if not parts:
+        raise RecipeError(SOURCE, (Problem("--ignore", "leaves nothing; ignore less"),))
+    left = {part.name for part in parts}
+    touching, apart = ([pair for pair in pairs if left.issuperset(pair)] for pairs in (recipe.touching, recipe.apart))
+    return replace(recipe, parts=parts, touching=tuple(touching), apart=tuple(apart))
+
+
+def check_patterns(patterns: Collection[str], names: list[str]) -> None:
+    """Raises: RecipeError: what is to be ignored fits no name."""
+    unknown = [shown(pattern) for pattern in patterns if not any(fits(name, pattern) for name in names)]
+    if unknown:
+        text = f"{' and '.join(unknown)} fits no part; there are {_listed(names)}"
+        raise RecipeError(SOURCE, (Problem("--ignore", text),))
+
+
 def known_printer(text: str) -> Printer:
     """The printer of that name or build volume.
 
@@ -185,9 +208,12 @@ def _check_rigid(recipe: Recipe, rigid: Collection[str]) -> list[Problem]:
     unknown = [_unknown_part(name, names) for name in dict.fromkeys(rigid) if name not in names]
     if not unknown:
         return []
+    return [Problem("--rigid", f"no part is named {' or '.join(unknown)}; there are {_listed(names)}")]
+
+
+def _listed(names: list[str]) -> str:
     rest = [f"and {len(names) - _MOST_NAMES} more"] if len(names) > _MOST_NAMES else []
-    known = ", ".join([*names[:_MOST_NAMES], *rest])
-    return [Problem("--rigid", f"no part is named {' or '.join(unknown)}; there are {known}")]
+    return ", ".join([*names[:_MOST_NAMES], *rest])
 
 
 def _check_patterns(recipe: Recipe, fold: dict[str, Any], rigid: Collection[str]) -> list[Problem]:

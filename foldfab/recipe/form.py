@@ -46,6 +46,8 @@ THINNEST, THICKEST = 2.0, 20.0
 """Limits of the thickness of a plate, mm in print."""
 MOST_PATTERNS = 100
 """Forbidden for one part."""
+MOST_PAIRS = 20_000
+"""Of parts of which is said whether they touch."""
 FARTHEST = 1e6
 """mm; larger sizes and coordinates are a wrong unit."""
 SMALLEST_SIZE = 0.01
@@ -76,7 +78,11 @@ def _folder(name: str) -> str:
 def _part_name(name: str, info: ValidationInfo) -> str:
     """Beside a model it may be a pattern for several names."""
     globs = (info.context or {}).get("globs", False)
-    _complain(part_name_problem(name.replace("*", "x").replace("?", "x") if globs else name))
+    return _pattern_of_names(name) if globs else _merged_name(name)
+
+
+def _pattern_of_names(name: str) -> str:
+    _complain(part_name_problem(name.replace("*", "x").replace("?", "x")))
     return name
 
 
@@ -165,6 +171,10 @@ AxisName = Literal["x", "+x", "-x", "y", "+y", "-y", "z", "+z", "-z", "auto"]
 Direction = Annotated[
     Annotated[AxisName, Tag("<axis>")] | Annotated[Vector, AfterValidator(_not_zero), Tag("<vector>")],
     Discriminator(lambda value: "<vector>" if isinstance(value, list) else "<axis>"),
+]
+Pairs = Annotated[
+    list[Annotated[list[Annotated[str, AfterValidator(_pattern_of_names)]], Field(min_length=2, max_length=2)]],
+    Field(max_length=MOST_PAIRS),
 ]
 Scale = Annotated[
     Annotated[Literal["fit"], Tag("<fit>")] | Annotated[float, Field(ge=1e-5, le=1e3), Tag("<number>")],
@@ -378,5 +388,9 @@ class RecipeForm(Form):
         default=None, description="A file of shapes in the recipe's folder; its bodies are parts."
     )
     parts: list[PartForm] = Field(default=[], max_length=MOST_PARTS)
+    touching: Pairs = Field(
+        default=[], description="Pairs of parts that touch although their boxes are apart; leg* fits all that begin so."
+    )
+    apart: Pairs = Field(default=[], description="Pairs of parts that do not touch although their boxes do.")
     fold: FoldForm = Field(default_factory=FoldForm)
     print: PrintForm = Field(default_factory=PrintForm)

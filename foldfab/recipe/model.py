@@ -17,6 +17,8 @@ Mechanism = Literal["in-place", "slanted", "deleted"]
 Side = Literal["l", "r"]
 Material = Literal["pla", "petg", "abs", "nylon"]
 Source = Literal["recipe", "command line", "profile", "calibration"]
+Pair = tuple[str, str]
+"""The names of two parts, sorted."""
 
 _SAME_EDGE = 1e-9
 """Shares of the width that are closer than this are the same cutting point."""
@@ -183,6 +185,10 @@ class Recipe:
     """Where it came from, for messages."""
     notes: tuple[str, ...] = ()
     """What reading had to suppose or leave out, a sentence each."""
+    touching: tuple[Pair, ...] = ()
+    """Parts that touch although their boxes are apart, sorted."""
+    apart: tuple[Pair, ...] = ()
+    """Parts that do not touch although their boxes do, sorted."""
     why: str = ""
     """Why it folds along its direction, where that was chosen for the maker."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from fnmatch import fnmatchcase
 
 LONGEST = 100
 """Characters in a name."""
@@ -53,6 +54,11 @@ def part_name_problem(name: str) -> str | None:
     if _DEVICE.fullmatch(name):
         return f"is the name of a device on Windows; try {name + '-1'!r}"
     return None
+
+
+def fits(name: str, pattern: str) -> bool:
+    """Whether a part's name fits a pattern with * and ?, capitals and small letters being the same."""
+    return fnmatchcase(name.casefold(), pattern.casefold().replace("[", "[[]"))
 
 
 def has_control_characters(text: str) -> bool:

@@ -8,10 +8,10 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from foldfab.errors import Problem, RecipeError
-from foldfab.recipe.build import boxes, build
+from foldfab.recipe.build import Gathered, boxes, build
 from foldfab.recipe.document import load, repeated_keys
 from foldfab.recipe.form import MILLIMETRES, FoldForm, RecipeForm
-from foldfab.recipe.model import Part, Recipe
+from foldfab.recipe.model import Recipe
 from foldfab.recipe.names import folder_name, folder_name_problem, same_name
 from foldfab.recipe.problems import EXPECTED, TOP, problems_of, shown
 
@@ -19,8 +19,8 @@ MOST_PROBLEMS = 500
 """More than these are counted, not listed."""
 
 
-PartsOf = Callable[[RecipeForm, Path], tuple[tuple[Part, ...], tuple[str, ...]]]
-"""What makes parts, and notes, of a recipe that names files of shapes: a room above this one."""
+PartsOf = Callable[[RecipeForm, Path], Gathered]
+"""What makes the parts of a recipe that names files of shapes: a room above this one."""
 
 
 def read(path: Path, parts_of: PartsOf | None = None) -> Recipe:
@@ -33,8 +33,7 @@ def read(path: Path, parts_of: PartsOf | None = None) -> Recipe:
     form = understood(load(path), source, path.stem)
     if parts_of is None or not names_files(form):
         return _of_boxes(form, path.stem, source)
-    parts, notes = parts_of(form, path)
-    return build(form, form.name or path.stem, source, parts, notes)
+    return build(form, form.name or path.stem, source, parts_of(form, path))
 
 
 def parse(data: object, source: str, default_name: str) -> Recipe:

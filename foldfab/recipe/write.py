@@ -6,7 +6,7 @@ import json
 from typing import Any
 
 from foldfab.geometry.arrays import Array
-from foldfab.recipe.model import Part, Pattern, PrintOptions, Recipe
+from foldfab.recipe.model import Pair, Part, Pattern, PrintOptions, Recipe
 
 
 def to_json(recipe: Recipe) -> dict[str, Any]:
@@ -17,6 +17,7 @@ def to_json(recipe: Recipe) -> dict[str, Any]:
         "units": "mm",
         "direction": "auto" if recipe.direction is None else _floats(recipe.direction),
         "parts": [_part(part) for part in recipe.parts],
+        **{key: [list(pair) for pair in pairs] for key, pairs in _contacts(recipe).items() if pairs},
         "fold": {
             "alpha": recipe.fold.alpha,
             "max_hinges": recipe.fold.max_hinges,
@@ -38,6 +39,10 @@ def as_text(recipe: Recipe) -> str:
     parts = ",\n".join(f"    {_line(_brief(part))}" for part in data["parts"])
     rest = {key: f"[\n{parts}\n  ]" if key == "parts" else _line(value) for key, value in data.items()}
     return "{\n" + ",\n".join(f"  {_line(key)}: {text}" for key, text in rest.items()) + "\n}\n"
+
+
+def _contacts(recipe: Recipe) -> dict[str, tuple[Pair, ...]]:
+    return {"touching": recipe.touching, "apart": recipe.apart}
 
 
 def _brief(part: dict[str, Any]) -> dict[str, Any]:

@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
-
-import numpy as np
 
 from foldfab.errors import AbstractionError
 from foldfab.geometry.arrays import Array
-from foldfab.geometry.boxes import close_pairs, grown
 from foldfab.geometry.rotation import upright
 from foldfab.recipe.model import Recipe
 from foldfab.scaffold import segments as seg
 from foldfab.scaffold.bases import Layout, find_bases
+from foldfab.scaffold.contacts import Contacts, contacts_of, listed, require_connected
 from foldfab.scaffold.groups import Groups
 from foldfab.scaffold.model import BasePatch, Patch, Scaffold
 from foldfab.scaffold.segments import Segment
 from foldfab.scaffold.sheets import sheets
 from foldfab.scaffold.split import cut
 
-TOUCH_SHARE = 0.02
-"""Parts touch where they are closer than this share of the parts' median longest side; tied to the parts and not to
-the whole, so that a composite is abstracted like its cells."""
 STEEP_THICKNESSES = 1.5
 """A base that slopes by more than this many panel thicknesses is printed level, and a note says so."""
 RAIL_THICKNESSES = 5.0
@@ -41,32 +37,39 @@ def abstract(recipe: Recipe, direction: Array, scale: float) -> Scaffold:
     """
     parts = seg.segments(recipe, direction, scale)
     thickness, gap = recipe.print.thickness, recipe.print.clearance
-    tolerance = TOUCH_SHARE * float(np.median(2 * np.array([s.half for s in parts]).max(1)))
-    _require_connected(parts, tolerance)
+    contacts, told = contacts_of(recipe, parts, thickness + gap)
+    require_connected(parts, contacts, scale)
     stub = STUB_THICKNESSES * thickness
-    layout, patches, notes = _laid_out(parts, tolerance, stub, thickness + gap)
+    layout, patches, notes = _laid_out(parts, contacts, stub, thickness + gap)
     cornered: frozenset[str] = frozenset()
     # A rail that touches no base can be one: it lies level, and what it touches folds. A part that is as high as the
     # others belongs to the base of an end that it meets at a corner; where it meets none it is printed level as well.
-    for most, has_corners in ((RAIL_THICKNESSES * thickness, False), (0.0, True), (np.inf, True)):
+    for most, has_corners in ((RAIL_THICKNESSES * thickness, False), (0.0, True), (math.inf, True)):
         loose = set(_loose(parts, layout, patches))
         level = {s.name for s in parts if s.name in loose and seg.is_level(s) and seg.slope(s) <= most}
         cornered |= frozenset(loose - level if has_corners else ())
         if level or (loose and has_corners):
             parts = tuple(seg.as_base(s) if s.name in level else s for s in parts)
-            layout, patches, notes = _laid_out(parts, tolerance, stub, thickness + gap, cornered)
+            layout, patches, notes = _laid_out(parts, contacts, stub, thickness + gap, cornered)
     if not layout.bases:
         names = tuple(s.name for s in parts)
         raise AbstractionError(
-            f"neither {_listed(names)} nor a joint of parts is perpendicular to the folding direction: no base",
+            f"neither {listed(names)} nor a joint of parts is perpendicular to the folding direction: no base",
             names,
         )
     _require_attached(_loose(parts, layout, patches))
     _require_one_piece(patches, layout.bases)
-    notes = (*notes, *_tilted(parts, thickness))
+    notes = (*told, *notes, *_tilted(parts, thickness))
     bases = tuple(replace(b, thickness=_thickest(recipe, b.parts, scale, is_base=True)) for b in layout.bases)
     patches = tuple(replace(p, thickness=_thickest(recipe, p.parts, scale, is_base=False)) for p in patches)
     return Scaffold(recipe, direction, upright(direction), scale, bases, patches, notes)
+
+
+def check_connected(recipe: Recipe) -> None:
+    """Raises: AbstractionError: the parts do not hang together."""
+    parts = seg.segments(recipe, -seg.VERTICAL, 1.0)
+    contacts, _ = contacts_of(recipe, parts, 0.0)
+    require_connected(parts, contacts, 1.0)
 
 
 def _thickest(recipe: Recipe, names: tuple[str, ...], scale: float, *, is_base: bool) -> float | None:
@@ -81,28 +84,15 @@ def _thickest(recipe: Recipe, names: tuple[str, ...], scale: float, *, is_base: 
     return max(asked) if asked else role
 
 
-def _require_connected(parts: tuple[Segment, ...], tolerance: float) -> None:
-    solids = grown(seg.as_boxes(parts), tolerance / 2)
-    i, j = close_pairs(solids, solids)
-    groups = sorted(Groups(len(parts), zip(i.tolist(), j.tolist(), strict=True)).all(), key=lambda g: (-len(g), min(g)))
-    if len(groups) > 1:
-        names = tuple(parts[i].name for i in groups[1])
-        raise AbstractionError(
-            f"{_listed(names)} do{'es' if len(names) == 1 else ''} not touch the rest (no part is within "
-            f"{tolerance / 2:.2g} mm at print scale); move the parts together",
-            names,
-        )
-
-
 def _laid_out(
     parts: tuple[Segment, ...],
-    tolerance: float,
+    contacts: Contacts,
     stub: float,
     distance: float,
     cornered: frozenset[str] = frozenset(),
 ) -> tuple[Layout, tuple[Patch, ...], tuple[str, ...]]:
     leaves = sheets(tuple(s for s in parts if not s.is_base), distance)
-    layout = find_bases(tuple(s for s in parts if s.is_base), leaves, tolerance, stub, cornered)
+    layout = find_bases(tuple(s for s in parts if s.is_base), leaves, contacts, stub, cornered)
     return layout, *cut(leaves, layout, stub)
 
 
@@ -125,7 +115,7 @@ def _loose(parts: tuple[Segment, ...], layout: Layout, patches: tuple[Patch, ...
 
 def _require_attached(loose: tuple[str, ...]) -> None:
     if loose:
-        raise AbstractionError(f"{_listed(loose)} would fold but touch{'es' if len(loose) == 1 else ''} no base", loose)
+        raise AbstractionError(f"{listed(loose)} would fold but touch{'es' if len(loose) == 1 else ''} no base", loose)
 
 
 def _require_one_piece(patches: tuple[Patch, ...], bases: tuple[BasePatch, ...]) -> None:
@@ -135,9 +125,4 @@ def _require_one_piece(patches: tuple[Patch, ...], bases: tuple[BasePatch, ...])
     groups = sorted(named, key=lambda g: (-len(g), g))
     if len(groups) > 1:
         names = tuple(groups[1])
-        raise AbstractionError(f"the base of {_listed(names)} is held by nothing that folds", names)
-
-
-def _listed(names: tuple[str, ...]) -> str:
-    shown = ", ".join(names[:5])
-    return shown if len(names) <= 5 else f"{shown} and {len(names) - 5} more"
+        raise AbstractionError(f"the base of {listed(names)} is held by nothing that folds", names)

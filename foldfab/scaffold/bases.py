@@ -14,6 +14,8 @@ import numpy as np
 
 from foldfab.geometry.boxes import Boxes, close_pairs, grown
 from foldfab.scaffold import segments, sheets
+from foldfab.scaffold.bridges import bridge
+from foldfab.scaffold.contacts import Contacts
 from foldfab.scaffold.groups import Groups
 from foldfab.scaffold.model import BasePatch, Outline
 from foldfab.scaffold.segments import Segment
@@ -51,7 +53,7 @@ class Layout:
 def find_bases(
     parts: tuple[Segment, ...],
     leaves: tuple[Sheet, ...],
-    tolerance: float,
+    contacts: Contacts,
     stub: float,
     cornered: frozenset[str] = frozenset(),
 ) -> Layout:
@@ -60,27 +62,30 @@ def find_bases(
     Args:
         parts: the segments perpendicular to d.
         leaves: the sheets that fold.
-        tolerance: parts closer than this touch, mm.
+        contacts: which of them touch.
         stub: shorter pieces of a sheet than this cannot fold and are trimmed, mm.
         cornered: parts whose ends belong to the base of an end that they meet at a corner.
     """
     touching: list[list[int]] = [[] for _ in leaves]
     joints: list[tuple[int, int]] = []
+    of_parts, of_leaves = [(part.name,) for part in parts], [leaf.parts for leaf in leaves]
     if parts:
-        solids = grown(segments.as_boxes(parts), tolerance / 2)
-        joints = _pairs(solids, solids)
-        for i, j in _pairs(grown(sheets.as_boxes(leaves), tolerance / 2), solids):
+        solids = segments.as_boxes(parts)
+        joints = contacts.between(solids, of_parts, solids, of_parts)
+        for i, j in contacts.between(sheets.as_boxes(leaves), of_leaves, solids, of_parts):
             touching[i].append(j)
-    lines, touched = _lines(parts, leaves, touching, tolerance, stub)
+    lines, touched = _lines(parts, leaves, touching, contacts.tolerance, stub)
     # Numbers of parts come first, those of lines after them.
     whole = Groups(len(parts) + len(lines), joints)
     for k, members in enumerate(touched, len(parts)):
         for j in members:
             whole.join(k, j)
-    for k, other in _meeting_ends(leaves, lines, tolerance, cornered):
+    for k, other in _meeting_ends(leaves, lines, contacts, cornered):
         whole.join(len(parts) + k, len(parts) + other)
     is_needed = _connecting(Groups(len(parts), joints), touched)
-    return _layout(whole, parts, leaves, lines, is_needed)
+    stated = contacts.stated(of_leaves, of_parts)
+    reached = [[j for j in members if (line.sheet, j) in stated] for line, members in zip(lines, touched, strict=True)]
+    return _layout(whole, parts, leaves, lines, is_needed, reached)
 
 
 def _pairs(a: Boxes, b: Boxes) -> list[tuple[int, int]]:
@@ -129,7 +134,7 @@ def _with_ends(
 
 
 def _meeting_ends(
-    leaves: tuple[Sheet, ...], lines: list[Line], tolerance: float, cornered: frozenset[str]
+    leaves: tuple[Sheet, ...], lines: list[Line], contacts: Contacts, cornered: frozenset[str]
 ) -> list[tuple[int, int]]:
     """Which lines, by their numbers, are ends of different sheets that meet along their length.
 
@@ -139,11 +144,13 @@ def _meeting_ends(
     ends = [k for k, line in enumerate(lines) if line.end]
     if not ends:
         return []
-    strips = grown(_strips(leaves, [lines[k] for k in ends], tolerance), tolerance / 2)
+    strips = grown(_strips(leaves, [lines[k] for k in ends], contacts.tolerance), contacts.tolerance / 2)
     found = []
     for i, j in _pairs(strips, strips):
         a, b = lines[ends[i]].sheet, lines[ends[j]].sheet
         is_corner = abs(leaves[a].along @ leaves[b].along) <= ALIGNED
+        if contacts.are_apart(leaves[a].parts, leaves[b].parts):
+            continue
         if a < b and (not is_corner or not cornered.isdisjoint(leaves[a].parts + leaves[b].parts)):
             found.append((ends[i], ends[j]))
     return found
@@ -160,8 +167,10 @@ def _strips(leaves: tuple[Sheet, ...], lines: list[Line], height: float) -> Boxe
 
 
 def _layout(
-    whole: Groups, parts: tuple[Segment, ...], leaves: tuple[Sheet, ...], lines: list[Line], is_needed: list[bool]
-) -> Layout:
+    whole: Groups, parts: tuple[Segment, ...], leaves: tuple[Sheet, ...], lines: list[Line], is_needed: list[bool],
+    reached: list[list[int]],
+) -> Layout:  # fmt: skip
+    """The bases by their groups; `reached` holds for each line the parts that it touches because the recipe says so."""
     found: list[tuple[BasePatch, list[Line]]] = []
     outlines = _outlines(parts)
     for component in whole.all():
@@ -169,8 +178,8 @@ def _layout(
         own = [n - len(parts) for n in component if n >= len(parts)]
         if members or len(own) > 1:
             inside = [lines[k] for k in own]
-            needed = [lines[k] for k in own if is_needed[k]]
-            strips = [_strip_outline(leaves[line.sheet], line) for line in needed]
+            strips = [_strip_outline(leaves[lines[k].sheet], lines[k]) for k in own if is_needed[k]]
+            strips += _bridges([(_strip_outline(leaves[lines[k].sheet], lines[k]), reached[k]) for k in own], outlines)
             made = _base([parts[j] for j in members], [outlines[j] for j in members], inside, strips, leaves)
             found.append((made, inside))
     floor = min((base.bottom for base, _ in found), default=0.0)
@@ -201,6 +210,11 @@ def _base(
     else:
         name = "+".join(sorted({leaves[line.sheet].parts[0] for line in lines})[:3])
     return BasePatch(name, tuple(sorted(p.name for p in parts)), low, high, (*outlines, *strips))
+
+
+def _bridges(reaching: list[tuple[Outline, list[int]]], outlines: list[Outline]) -> list[Outline]:
+    found = [bridge(strip, outlines[j]) for strip, members in reaching for j in members]
+    return [outline for outline in found if outline is not None]
 
 
 def _connecting(joined: Groups, touched: list[list[int]]) -> list[bool]:

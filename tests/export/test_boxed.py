@@ -45,6 +45,6 @@ def test_open_beside_flat_with_the_direction(solution: Make) -> None:
     assert heights[1] < 0.8 * heights[0]
     ink = (pixels.max(axis=2) < 60)[HEAD:, :]
     # Down, in the corner of the open picture alone.
-    corner = ink[20:115, 40:100]
-    assert np.ptp(np.flatnonzero(corner.any(axis=1))) > 60 > np.ptp(np.flatnonzero(corner.any(axis=0)))
-    assert not ink[20:115, CELL[0] + 40 : CELL[0] + 100].any()
+    corner = ink[290:380, 20:90]
+    assert np.ptp(np.flatnonzero(corner.any(axis=1))) > 50 > np.ptp(np.flatnonzero(corner.any(axis=0)))
+    assert not ink[290:380, CELL[0] + 20 : CELL[0] + 90].any()

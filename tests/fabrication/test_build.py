@@ -14,13 +14,26 @@ from foldfab import cli
 from foldfab.errors import FabricationError
 from foldfab.fabrication import build as room
 from foldfab.fabrication.model import Assembly, Body, Finding
-from foldfab.recipe.model import Printer
+from foldfab.folding.model import FoldSolution
+from foldfab.recipe.model import Part, Printer
 
 BOARDS = [
     {"name": "top", "box": {"center": [0, 0, 70], "size": [200, 70, 4]}},
     {"name": "leg", "box": {"center": [-90, 0, 34], "size": [4, 60, 68]}},
 ]
 TINY = {"name": "tiny", "build_volume": [60, 60, 60]}
+
+
+def test_shelves_at_either_side_of_a_wall_come_to_lie_on_each_other_and_not_through_the_feet_of_that_wall(
+    solution: Callable[..., FoldSolution], board_at: Callable[..., Part], wall_at: Callable[..., Part]
+) -> None:
+    boards = (board_at("ground", 0, 208, 40), board_at("ceiling", 104, 208, 40))
+    shelves = (board_at("large", 48, 120, 36, x=-36), board_at("small", 36, 70, 36, x=62))
+    walls = (wall_at("left", -98, 0, 104, 36), wall_at("right", 98, 0, 104, 36), wall_at("middle", 25, 0, 104, 36))
+    made = room.build(solution((*boards, *shelves, *walls)), "open")
+    thick = made.solution.thickness
+    level = {base.name: base.top + made.poses[base.name][-1][2, 3] for base in made.solution.scaffold.bases}
+    assert level["large"] - level["small"] >= thick.panel + thick.gap
 
 
 @pytest.mark.parametrize("name", ["shelter", "table"])

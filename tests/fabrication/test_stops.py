@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from foldfab.fabrication import solids
+from foldfab.fabrication.build import build
 from foldfab.fabrication.inspect import inspect
 from foldfab.fabrication.model import Assembly
 from foldfab.fabrication.panels import panels
@@ -17,8 +18,11 @@ from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.stops import Stop, rests, stops
 from foldfab.fabrication.trial import Trial
 from foldfab.fabrication.turning import PAST, meets, turn
+from foldfab.fabrication.walls import thin_sides
+from foldfab.folding.model import FoldSolution
+from foldfab.recipe.model import Part
 
-CASES = list(itertools.product(("shelter", "table"), ("open", "folded")))
+CASES = list(itertools.product(("shelter", "table"), ("open", "folded", "edge")))
 
 
 @pytest.mark.parametrize(("name", "posture"), CASES)
@@ -56,6 +60,40 @@ def test_open_prints_get_levers_and_folded_ones_close_faces(assembled: Callable[
     }
     assert {"tongue", "lap"} <= kinds["open"]
     assert {"heel", "butt"} <= kinds["folded"]
+
+
+@pytest.mark.parametrize("name", ["slanted_t", "slanted_h", "same_way"])
+def test_the_slot_of_a_panel_that_leans_leaves_no_skin_below_it(
+    name: str, solution: Callable[..., FoldSolution]
+) -> None:
+    for joint in build(solution(name), "open").joints:
+        assert joint.stops == ("tongue",)
+        assert joint.stop_deg[0] is not None and joint.stop_deg[0] <= PAST
+
+
+@pytest.mark.parametrize("x", [-93.3, -93.1, -92.9])
+def test_a_slot_close_to_the_edge_of_its_base_is_opened_there(
+    x: float, solution: Callable[..., FoldSolution], board_at: Callable[..., Part], wall_at: Callable[..., Part]
+) -> None:
+    made = build(solution((board_at("top", 0), wall_at("leg", x, 0, 72))), "open")
+    (joint,) = made.joints
+    assert joint.stop_deg[0] is not None and joint.stop_deg[0] <= PAST
+    assert all(thin_sides(body) == 0 for body in as_solids(made).values())
+
+
+def test_a_rest_on_edge_has_a_ramp_below_it(assembled: Callable[..., Assembly]) -> None:
+    assembly = assembled("shelter", "edge")
+    assert assembly.up is not None
+    chain = assembly.solution.chain("wall")
+    (tilted, *_) = rests(assembly.solution, chain, 0, assembly.up)
+    vertices, faces = solids.mesh(printed(tilted.added))
+    corners = vertices[faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    down = (normals / np.linalg.norm(normals, axis=1, keepdims=True)) @ -assembly.up
+    # All that looks down is the root, which is within the plate's own foot, and a ramp steeper than 45°.
+    root = chain.root[0] + chain.panel / 2 * np.array([-1.0, 1.0])
+    flat = corners[down > np.sqrt(0.5)][..., 0]
+    assert len(flat) and ((flat >= root[0] - 1e-6) & (flat <= root[1] + 1e-6)).all()
 
 
 def test_a_stop_without_room_is_not_made(assembled: Callable[..., Assembly]) -> None:

@@ -37,6 +37,14 @@ def test_it_gives_up_where_the_graph_is_wide(monkeypatch: pytest.MonkeyPatch) ->
     assert eliminate.eliminated({g: np.isfinite(c) for g, c in enumerate(costs)}, costs, table) is None
 
 
+def test_it_gives_up_where_a_table_would_have_more_entries_than_a_machine_can_count() -> None:
+    """Patches that all conflict with one another, 32 options each: 2^65 combinations."""
+    alike = np.eye(32, dtype=bool)
+    table = [{h: alike for h in range(14) if h != g} for g in range(14)]
+    costs = [np.arange(32.0)] * 14
+    assert eliminate.eliminated({g: np.ones(32, dtype=bool) for g in range(14)}, costs, table) is None
+
+
 def test_long_rows_of_patches_are_eliminated(monkeypatch: pytest.MonkeyPatch) -> None:
     costs, table = _graph(np.random.default_rng(1), 60, is_ring=False)
     pairs = {(g, h): m for g, row in enumerate(table) for h, m in row.items() if g < h}

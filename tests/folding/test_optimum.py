@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 from foldfab.errors import FoldfabError, FoldingError
+from foldfab.folding import optimum, replay
+from foldfab.folding.group import Group
 from foldfab.folding.improve import weight
 from foldfab.folding.model import FoldSolution, Thickness
 from foldfab.folding.options import DELETION
@@ -53,6 +55,21 @@ def test_it_finds_what_greedy_misses(problem: Make, crowded: tuple[Part, ...]) -
     found, bound = _ordered(best, floors(best))
     assert bound <= weight(found) + NO_MORE
     assert weight(found) <= greedily + NO_MORE
+
+
+def test_what_a_unit_tried_in_vain_is_learned_once_and_changes_no_optimum(
+    problem: Make, three_in_a_row: tuple[Part, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    groups: list[Group] = []
+    pose = optimum._group
+    monkeypatch.setattr(optimum, "_group", lambda *given: groups.append(pose(*given)) or groups[-1])
+    made = problem(three_in_a_row, ordering="optimal", time_limit=30.0)
+    found, bound = _ordered(made, floors(made))
+    assert groups and all(group.lessons and len(group.lessons) == len(set(group.lessons)) for group in groups)
+    monkeypatch.setattr(replay, "_learn_from_repair", lambda *_: None)
+    made = problem(three_in_a_row, ordering="optimal", time_limit=30.0)
+    other, other_bound = _ordered(made, floors(made))
+    assert (weight(found), bound) == pytest.approx((weight(other), other_bound), abs=NO_MORE)
 
 
 def test_a_little_work_gives_a_fold_with_its_bound(solution: Callable[..., FoldSolution]) -> None:

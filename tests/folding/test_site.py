@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from foldfab.folding.model import Thickness
-from foldfab.folding.site import Site, sites, slab
+from foldfab.folding.site import Site, plate_boxes, sites, slab
 from foldfab.geometry.boxes import bounds, grown, overlaps
 from foldfab.recipe.model import Part
 from foldfab.scaffold.model import Scaffold
@@ -68,3 +68,16 @@ def test_walls_that_meet_in_a_corner_are_trimmed_to_leave_a_gap(
 def test_walls_far_apart_keep_their_width(scaffold: Make) -> None:
     for site in placed(scaffold("box_with_table")).values():
         assert np.ptp(site.span) == pytest.approx(site.patch.width)
+
+
+def test_a_plate_reaches_below_a_wall_that_it_meets_with_its_edge(
+    scaffold: Make, board_at: Callable[..., Part], wall_at: Callable[..., Part]
+) -> None:
+    made = scaffold(
+        (board_at("ground", 0), board_at("shelf", 40, 70, x=40), board_at("top", 80), wall_at("wall", 2, 0, 80))
+    )
+    held = placed(made).values()
+    low, high = (corner[:, 0] for corner in bounds(plate_boxes(made.base("shelf"), held, THICK)))
+    # Its own board, and a lip for each of the two panels of the wall.
+    assert low == pytest.approx([5, -0.4, -0.4]) and high == pytest.approx([75, 4.4, 4.4])
+    assert len(plate_boxes(made.base("ground"), held, THICK)) == 1

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from foldfab.geometry.arrays import frozen, frozen_indices
+from foldfab.geometry.arrays import frozen, frozen_indices, handed
 
 
 def test_a_frozen_array_does_not_follow_what_it_was_made_from() -> None:
@@ -40,11 +40,31 @@ def test_minus_one_matches_any_length() -> None:
     assert frozen_indices(np.zeros((0, 2)), -1, 2).shape == (0, 2)
 
 
-def test_what_is_frozen_is_not_copied_again() -> None:
-    first = frozen([1.0, 2.0], 2)
-    assert frozen(first, 2) is first
+def test_what_is_frozen_or_handed_over_is_not_copied_again() -> None:
+    once = frozen([1.0, 2.0, 3.0, 4.0], 4)
+    assert frozen(once, 4) is once
+    fresh = np.arange(6)
+    kept = frozen_indices(handed(fresh).reshape(2, 3), 2, 3)
+    assert np.shares_memory(kept, fresh)
+    with pytest.raises(ValueError, match="read-only"):
+        fresh[0] = 3
+
+
+def test_what_somebody_can_still_write_to_is_copied() -> None:
+    source = np.zeros(4)
+    view = source[:2]
+    view.setflags(write=False)
+    single = np.zeros(2, dtype=np.float32)
+    single.setflags(write=False)
+    for given in (view, single, np.frombuffer(bytes(16))):
+        copy = frozen(given, 2)
+        assert not np.shares_memory(copy, given)
+        assert copy.dtype == np.float64
+
+
+def test_a_frozen_array_of_another_shape_is_refused() -> None:
     with pytest.raises(ValueError, match="expected shape"):
-        frozen(first, 3)
+        frozen(frozen([1.0, 2.0], 2), 3)
 
 
 def test_a_read_only_view_is_copied() -> None:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from foldfab.geometry import boxes as module
 from foldfab.geometry.arrays import Array
-from foldfab.geometry.boxes import Boxes, bounds, close_pairs, grown, moved, near_pairs, overlaps, stacked
+from foldfab.geometry.boxes import Boxes, bounds, close_pairs, gaps, grown, moved, near_pairs, overlaps, stacked
 
 MARGIN = 1e-6
 SIGNS = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
@@ -202,3 +202,13 @@ def test_moving_keeps_axes_and_size() -> None:
     shifted = moved(box, np.array([1.0, 2.0, 3.0]))
     assert shifted.center == pytest.approx(box.center + np.array([1.0, 2.0, 3.0]))
     assert (shifted.axes == box.axes).all() and (shifted.half == box.half).all()
+
+
+def test_gaps_are_what_boxes_grow_by_to_meet() -> None:
+    turned = np.array([[0.6, 0.8, 0], [-0.8, 0.6, 0], [0, 0, 1.0]])
+    a = stacked([one((0, 0, 0), (1, 1, 1))] * 3)
+    b = stacked([one((5, 0, 0), (1, 2, 3)), one((1, 1, 1), (1, 1, 1)), one((4, 0, 0), (2**0.5, 1, 1), turned)])
+    found = gaps(a, b)
+    assert found[:2] == pytest.approx([3, 0])
+    assert overlaps(grown(a, found[2] / 2 + MARGIN), grown(b, found[2] / 2 + MARGIN))[2]
+    assert not overlaps(grown(a, found[2] / 2 - MARGIN), grown(b, found[2] / 2 - MARGIN))[2]

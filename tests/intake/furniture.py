@@ -135,3 +135,27 @@ def threemf(file: Path, xml: str | bytes, **others: str) -> Path:
         for name, content in others.items():
             archive.writestr(f"3D/{name}.model", content)
     return file
+
+
+def urdf(parts: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = SHELF) -> str:
+    """A URDF file in metres: a link for each part, all hung on the first by fixed joints."""
+    first, *rest = parts
+    text = ""
+    for name, (_, size) in parts.items():
+        sides = " ".join(str(side / 1000) for side in size)
+        text += f'<link name="{name}"><visual><geometry><box size="{sides}"/></geometry></visual></link>'
+    for name in rest:
+        way = " ".join(str((a - b) / 1000) for a, b in zip(parts[name][0], parts[first][0], strict=True))
+        ends = f'<parent link="{first}"/><child link="{name}"/>'
+        text += f'<joint name="to {name}" type="fixed"><origin xyz="{way}"/>{ends}</joint>'
+    return f'<robot name="shelf">{text}</robot>'
+
+
+def mjcf(parts: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = SHELF) -> str:
+    """An MJCF file in metres: a body for each part, each with one box."""
+    text = ""
+    for name, (center, size) in parts.items():
+        place = " ".join(str(value / 1000) for value in center)
+        half = " ".join(str(side / 2000) for side in size)
+        text += f'<body name="{name}" pos="{place}"><freejoint/><geom type="box" size="{half}"/></body>'
+    return f'<mujoco><worldbody><geom type="plane" size="9 9 1"/>{text}</worldbody></mujoco>'

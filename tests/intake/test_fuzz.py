@@ -12,7 +12,7 @@ from foldfab.errors import RecipeError
 from foldfab.intake.door import load
 from foldfab.intake.model import Wishes
 
-from .furniture import glb, gltf, meshes, model_xml, obj, stl, text_stl, threemf
+from .furniture import glb, gltf, meshes, mjcf, model_xml, obj, stl, text_stl, threemf, urdf
 
 ROUNDS = 120
 NUMBERS = (b"9" * 12, b"-", b"e99", b"nan", b"0")
@@ -30,6 +30,8 @@ def good(folder: Path, ending: str) -> bytes:
         ".obj": obj(meshes()).encode(),
         ".stl": stl(some),
         ".STL": text_stl("a", some).encode(),
+        ".urdf": urdf().encode(),
+        ".mjcf": mjcf().encode(),
     }[ending]
 
 
@@ -50,7 +52,7 @@ def damaged(content: bytes, chance: random.Random) -> bytes:
     return bytes(found)
 
 
-@pytest.mark.parametrize("ending", [".glb", ".gltf", ".obj", ".stl", ".STL", ".3mf"])
+@pytest.mark.parametrize("ending", [".glb", ".gltf", ".obj", ".stl", ".STL", ".3mf", ".urdf", ".mjcf"])
 def test_damage_is_refused_or_harmless(tmp_path: Path, ending: str) -> None:
     content, chance = good(tmp_path, ending), random.Random(7)
     file = tmp_path / f"a{ending}"

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+import foldfab
 from foldfab.errors import RecipeError
 from foldfab.intake.door import load
+from foldfab.intake.meshes import joined
 from foldfab.intake.model import Wishes
-from foldfab.recipe.model import Recipe
+from foldfab.recipe.model import Part, Recipe
 from foldfab.recipe.read import parse
 from foldfab.recipe.write import as_text
 
-from .furniture import SHELF, box, cylinder, glb, gltf, meshes, model_xml, obj, stl, threemf
+from .furniture import SHELF, box, cylinder, glb, gltf, meshes, mjcf, model_xml, obj, stl, threemf
 
 NO_WISHES = Wishes()
 
@@ -28,6 +31,7 @@ def folder(tmp_path: Path) -> Path:
     (tmp_path / "shelf.glb").write_bytes(glb(*gltf(meshes(), embed=False)))
     (tmp_path / "shelf.gltf").write_text(json.dumps(gltf(meshes())[0]), encoding="utf-8")
     threemf(tmp_path / "shelf.3mf", model_xml(meshes()))
+    (tmp_path / "shelf.xml").write_text(mjcf(), encoding="utf-8")
     (tmp_path / "shelf").mkdir()
     for name, mesh in meshes().items():
         (tmp_path / "shelf" / f"{name}.stl").write_bytes(stl(mesh))
@@ -43,11 +47,30 @@ def assert_is_the_shelf(recipe: Recipe) -> None:
         assert np.array_equal(found[name].axes, np.eye(3))
 
 
-@pytest.mark.parametrize("name", ["shelf.obj", "shelf.glb", "shelf.gltf", "shelf.3mf", "shelf"])
+@pytest.mark.parametrize("name", ["shelf.obj", "shelf.glb", "shelf.gltf", "shelf.3mf", "shelf.xml", "shelf"])
 def test_every_format_gives_the_same_recipe(folder: Path, name: str) -> None:
     recipe = load(folder / name, NO_WISHES)
     assert (recipe.name, recipe.direction) == ("shelf", None)
     assert_is_the_shelf(recipe)
+
+
+def folded(recipe: Recipe) -> tuple[list[object], float]:
+    """What is done to the parts, and the cost."""
+    asked = replace(recipe, print=replace(recipe.print, scale=0.2))
+    found = foldfab.foldabilize(replace(asked, direction=np.array([0.0, -1.0, 0.0])))
+    return [(m.patch, m.mechanism, m.hinges, m.side, m.window) for m in found.modifications], found.cost
+
+
+def test_every_format_folds_the_same(folder: Path) -> None:
+    names = ("shelf.obj", "shelf.glb", "shelf.gltf", "shelf.3mf", "shelf")
+    first, *others = (folded(with_back(load(folder / name, NO_WISHES))) for name in names)
+    assert len(first[0]) == 5
+    assert others == [first] * 4
+
+
+def with_back(recipe: Recipe) -> Recipe:
+    back = Part("back", np.array([250.0, 309, 400]), np.array([500.0, 18, 800]), np.eye(3))
+    return replace(recipe, parts=(*recipe.parts, back))
 
 
 def test_step_and_build123d_give_the_same_recipe(tmp_path: Path) -> None:
@@ -63,6 +86,8 @@ def test_step_and_build123d_give_the_same_recipe(tmp_path: Path) -> None:
         recipe = load(source, NO_WISHES)
         assert recipe.name == "shelf"
         assert_is_the_shelf(recipe)
+        boxes = [Part(name, np.array(c), np.array(s), np.eye(3)) for name, (c, s) in SHELF.items()]
+        assert folded(with_back(recipe)) == folded(with_back(replace(recipe, parts=tuple(boxes))))
 
 
 def test_a_recipe_as_understood_is_understood_again(folder: Path) -> None:
@@ -140,3 +165,48 @@ def test_wishes_for_shapes_that_a_recipe_of_boxes_does_not_have() -> None:
 def test_a_name_that_is_no_folders(tmp_path: Path) -> None:
     (tmp_path / "Mein Stuhl (2).obj").write_text(obj(meshes()), encoding="utf-8")
     assert load(tmp_path / "Mein Stuhl (2).obj", NO_WISHES).name == "Mein-Stuhl-2"
+
+
+@pytest.mark.parametrize("name", ["shelf.obj", "shelf", "model", "own", "plain"])
+def test_parts_are_left_out_wherever_they_come_from(folder: Path, name: str) -> None:
+    top = {"name": "Top", "box": {"center": [250, 150, 791], "size": [500, 300, 18]}}
+    recipes: dict[str, dict[str, Any]] = {
+        "model": {"model": "shelf.obj"},
+        "own": {"model": "shelf.obj", "parts": [{"name": "Top", "ignore": True}, {**top, "name": "Top 2"}]},
+        "plain": {"parts": [top, {**top, "name": "Shelf"}], "touching": [["Top", "Shelf"]]},
+    }
+    wishes = Wishes(ignore=("top*",) if name == "plain" else ("top*", "side r*"))
+    found = recipe(folder, wishes, **recipes[name]) if name in recipes else load(folder / name, wishes)
+    left = {"Shelf"} if name == "plain" else set(SHELF) - {"Top", "Side right"}
+    assert {part.name for part in found.parts} == left
+    assert found.touching == ()
+
+
+@pytest.mark.parametrize("name", ["shelf.obj", "bench", "mine"])
+def test_what_is_to_be_left_out_has_to_be_there(folder: Path, name: str) -> None:
+    wishes = Wishes(ignore=("foot*",))
+    with pytest.raises(RecipeError, match=r"--ignore: 'foot\*' fits no part; there are \w+") as caught:
+        recipe(folder, wishes, model="shelf.obj") if name == "mine" else load(find(folder, name), wishes)
+    assert caught.value.exit_status == 2
+    with pytest.raises(RecipeError, match="ignore less"):
+        load(find(folder, name) if name != "mine" else folder / "mine.json", Wishes(ignore=("*",)))
+
+
+def find(folder: Path, name: str) -> Path | str:
+    return folder / name if "." in name else name
+
+
+def test_true_contacts_come_with_the_recipe_and_stay_as_they_are_edited(folder: Path) -> None:
+    angle = joined([box((0, 0, 10), (600, 400, 20)), box((-290, 0, 210), (20, 400, 380))])
+    bodies = {"angle": angle, "inside": box((200, 0, 300), (100, 390, 100))}
+    (folder / "bent.obj").write_text(obj(bodies), encoding="utf-8")
+    first = load(folder / "bent.obj", Wishes(units="mm"))
+    assert (first.touching, first.apart) == ((), (("angle", "inside"),))
+    assert "do not touch, although their boxes do: angle and inside" in first.notes
+    assert parse(json.loads(as_text(first)), "a.json", "a").apart == first.apart
+    edited = recipe(folder, model="bent.obj", units="mm", touching=[["angle", "in*"]])
+    assert (edited.touching, edited.apart) == (first.apart, ())
+    (folder / "angle.obj").write_text(obj({"a": angle}), encoding="utf-8")
+    inside = {"center": [200, 0, 300], "size": [100, 390, 100]}
+    own = [{"name": "bent", "mesh": "angle.obj"}, {"name": "inside", "box": inside}]
+    assert recipe(folder, units="mm", parts=own).apart == (("bent", "inside"),)

@@ -93,6 +93,43 @@ def test_what_is_no_step_file(tmp_path: Path, content: bytes) -> None:
         step.read(tmp_path / "a.step")
 
 
+@pytest.mark.parametrize("name", ["part_seat.stp", "../part_seat.stp", "/etc/passwd"])
+def test_a_file_that_names_other_files_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    """The kernel would read them, wherever they are."""
+    folder = tmp_path / "in"
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    write_in_several_files()
+    if name.startswith(".."):
+        Path("part_seat.stp").rename(name)
+    text = Path("whole.step").read_text(encoding="latin-1")
+    assert "part_seat.stp" in text
+    Path("whole.step").write_text(text.replace("part_seat.stp", name), encoding="latin-1")
+    with pytest.raises(RecipeError, match="refers to other files; export the furniture as one STEP file"):
+        step.read(folder / "whole.step")
+
+
+def write_in_several_files() -> None:
+    """An assembly whose parts lie in STEP files of their own, as the kernel writes it, in this folder."""
+    from OCP.Message import Message_ProgressRange
+    from OCP.STEPCAFControl import STEPCAFControl_Reader, STEPCAFControl_Writer
+    from OCP.STEPControl import STEPControl_AsIs
+    from OCP.TCollection import TCollection_ExtendedString
+    from OCP.TDocStd import TDocStd_Document
+
+    solids = [b3d.Solid.make_box(9, 9, 1), b3d.Solid.make_box(1, 2, 3)]
+    solids[0].label, solids[1].label = "seat", "leg"
+    b3d.export_step(b3d.Compound(label="stool", children=solids), "one.step")
+    document = TDocStd_Document(TCollection_ExtendedString("XCAF"))
+    reader, writer = STEPCAFControl_Reader(), STEPCAFControl_Writer()
+    reader.SetNameMode(True)
+    writer.SetNameMode(True)
+    reader.ReadFile("one.step")
+    reader.Transfer(document)
+    writer.Transfer(document, STEPControl_AsIs, "part_", Message_ProgressRange())
+    writer.Write("whole.step")
+
+
 @pytest.mark.parametrize("share", [0.3, 0.6, 0.95])
 def test_truncated_files(file: Path, tmp_path: Path, share: float) -> None:
     content = file.read_bytes()

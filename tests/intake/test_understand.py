@@ -8,8 +8,9 @@ import pytest
 from foldfab.errors import RecipeError
 from foldfab.intake.meshes import joined
 from foldfab.intake.model import Body, Shapes, Wishes
-from foldfab.intake.understand import Grouping, fits, named, parts
+from foldfab.intake.understand import Grouping, named, parts
 from foldfab.recipe.model import Mesh, Part
+from foldfab.recipe.names import fits
 
 from .furniture import box, cylinder, meshes
 
@@ -21,8 +22,8 @@ def understood(
 ) -> tuple[dict[str, Part], str]:
     shapes = Shapes(tuple(Body(name, mesh) for name, mesh in bodies.items()), millimetres=1.0)
     some, told = named("a.obj", shapes, wishes)
-    found, notes = parts("a.obj", some, wishes, grouping or Grouping())
-    return {part.name: part for part in found}, "\n".join((*told, *notes))
+    found = parts("a.obj", some, wishes, grouping or Grouping())
+    return {part.name: part for part in found.parts}, "\n".join((*told, *found.notes))
 
 
 def test_boxes_stay_boxes() -> None:
@@ -55,7 +56,8 @@ def test_names_are_made_unique_and_shells_split() -> None:
     pair = joined([box((0, 0, 0), (40, 40, 700)), box((400, 0, 0), (40, 40, 700))])
     assert list(understood({"legs": pair, "top": box((0, 0, 0), (500, 9, 9))})[0]) == ["legs", "top"]
     split = Wishes(split_shells=True)
-    assert list(understood({"legs": pair, "Legs-1": pair, "": pair}, split)[0]) == [
+    more, last = (Mesh(pair.vertices + np.array([0, y, 0]), pair.faces) for y in (300, 600))
+    assert list(understood({"legs": pair, "Legs-1": more, "": last}, split)[0]) == [
         "legs-1", "legs-2", "Legs-1-1", "Legs-1-2", "part-1", "part-2",
     ]  # fmt: skip
 
@@ -79,6 +81,13 @@ def test_sheets_and_lines() -> None:
 def test_parts_in_one_place_are_told() -> None:
     _, notes = understood({"a": box((0, 0, 0), (500, 300, 18)), "b": box((0, 0, 0), (500, 300, 18))})
     assert "stand in the very same place, as if the file had lost where they belong: a; b" in notes
+
+
+def test_many_parts_in_one_place_are_refused() -> None:
+    lost = {name: box((0, 0, 0), (500, 300, 18)) for name in ("a", "b", "c")}
+    with pytest.raises(RecipeError, match=r"a; b; c stand in the very same place.*--ignore NAME"):
+        understood(lost)
+    assert list(understood(lost, grouping=Grouping(ignored=("b", "c")))[0]) == ["a"]
 
 
 def test_a_piece_of_furniture_that_stands_askew_is_the_same_one() -> None:
@@ -105,3 +114,4 @@ def test_what_is_wrong_is_said(bodies: dict[str, Mesh], grouping: Grouping, says
 
 def test_patterns() -> None:
     assert fits("Side left", "side*") and fits("leg1", "LEG?") and not fits("leg12", "leg?")
+    assert fits("leg [2]", "leg [2]") and fits("leg [2]", "leg*]") and not fits("leg 2", "leg [2]")

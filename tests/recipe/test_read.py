@@ -13,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from foldfab.errors import RecipeError
+from foldfab.recipe.build import Gathered
 from foldfab.recipe.model import Pattern
 from foldfab.recipe.read import MOST_PROBLEMS, parse, read
 
@@ -190,7 +191,7 @@ def test_parts_of_files_come_from_a_room_above(tmp_path: Path) -> None:
     file = tmp_path / "stool.json"
     file.write_text('{"model": "stool.step", "parts": [{"name": "leg*", "hingeable": false}]}', encoding="utf-8")
     part = parse(STOOL, "stool.json", "stool").parts[0]
-    recipe = read(file, lambda form, path: ((part,), (f"{form.model} of {path.name}",)))
+    recipe = read(file, lambda form, path: Gathered((part,), (f"{form.model} of {path.name}",)))
     assert (recipe.name, recipe.parts, recipe.notes) == ("stool", (part,), ("stool.step of stool.json",))
 
 

@@ -32,11 +32,11 @@ def test_a_tilted_seat_counts_from_where_it_shows(
 
 
 def test_how_much_it_counts(scaffold: Make, box: Callable[..., Part]) -> None:
-    """Two legs fold under a board that is set on edge."""
+    """Two legs fold under a rail that is set on edge."""
     parts = (
-        box("board", (0, 0, 100), (200, 4, 60)),
+        box("rail", (0, 0, 80), (200, 4, 20)),
         box("left", (-60, 0, 35), (4, 60, 70)),
         box("right", (60, 0, 35), (4, 60, 70)),
     )
     found = turned(scaffold(parts))
-    assert found == pytest.approx({"board": 200 * 60 / (200 * 60 + 2 * 60 * 70)})
+    assert found == pytest.approx({"rail": 200 * 20 / (200 * 20 + 2 * 60 * 70)})

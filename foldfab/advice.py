@@ -49,6 +49,9 @@ def _changes(recipe: Recipe) -> Iterator[tuple[str, Recipe]]:
         yield "with slanting allowed", replace(recipe, fold=replace(fold, slanting=True))
     if fold.stay_in_box:
         yield "if it may leave its bounding box", replace(recipe, fold=replace(fold, stay_in_box=False))
+    if recipe.print.own_thickness:
+        plain = replace(recipe.print, own_thickness=False)
+        yield f"with plates of {plain.thickness:g} mm instead of their own", replace(recipe, print=plain)
     yield from _freed(recipe)
     more = replace(fold, max_hinges=fold.max_hinges + MORE_HINGES)
     yield f"with up to {more.max_hinges} hinges a part", replace(recipe, fold=more)

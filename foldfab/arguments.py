@@ -17,7 +17,7 @@ _OPTIONS: tuple[tuple[str, str, str], ...] = (
     ("--scale", "S", 'print size over true size: "fit", a number, or a ratio such as 1:5'),
     ("--hinge", "STYLE", "cone or clip, printed in place; filament, screw-m2 or screw-m3, pinned after printing"),
     ("--clearance", "MM", "gap that a hinge is printed with, 0.15 to 1; auto: by calibration or nozzle"),
-    ("--shape", "S", "plain plates, or own: cut to the outlines of parts that came with a shape"),
+    ("--shape", "S", "plain plates, or own: as parts look that came with a shape, where they fold"),
     ("--nozzle", "MM", "diameter of the nozzle (0.4)"),
     ("--layer", "MM", "height of a layer (0.2)"),
     ("--material", "M", "pla, petg, abs or nylon"),

@@ -103,21 +103,13 @@ class Row:
 
 def ranked(recipe: Recipe, tell: Callable[[str], None] = lambda text: None) -> tuple[Row, ...]:
     """All lines that are tried, best first; those that fold neither way stand last."""
-    of = lines(recipe)
     brief = replace(recipe.fold, time_limit=min(recipe.fold.time_limit, SEARCH))
     # A posture that is still to be chosen is chosen for the best direction.
     posture = "open" if recipe.print.posture == "auto" else recipe.print.posture
     recipe = replace(recipe, fold=brief, print=replace(recipe.print, posture=posture))
-    frame = main_frame(of)
-    rows = []
-    for line in of:
-        ways = []
-        for direction in (line.direction, 0.0 - line.direction):
-            tell(f"trying {title(direction)}")
-            ways.append(_way(recipe, direction, frame))
-        best, other = sorted(ways, key=_order)
-        rows.append(Row(line, best, other))
-    return tuple(sorted(rows, key=lambda row: _order(row.best)))
+    # Thinner plates save more space: directions are compared at the thickness that is asked for, while one folds so.
+    rows = _tried(replace(recipe, print=replace(recipe.print, may_thin=False)), tell)
+    return _tried(recipe, tell) if recipe.print.may_thin and rows[0].best.solution is None else rows
 
 
 def settled(recipe: Recipe) -> Recipe:
@@ -158,6 +150,20 @@ def _listed(names: tuple[str, ...]) -> str:
 
 def _difference(amount: float, more: str, less: str, unit: float = 100.0) -> list[str]:
     return [(more if amount > 0 else less).format(abs(amount) * unit)] if abs(amount) >= _WORTH_SAYING else []
+
+
+def _tried(recipe: Recipe, tell: Callable[[str], None]) -> tuple[Row, ...]:
+    of = lines(recipe)
+    frame = main_frame(of)
+    rows = []
+    for line in of:
+        ways = []
+        for direction in (line.direction, 0.0 - line.direction):
+            tell(f"trying {title(direction)}")
+            ways.append(_way(recipe, direction, frame))
+        best, other = sorted(ways, key=_order)
+        rows.append(Row(line, best, other))
+    return tuple(sorted(rows, key=lambda row: _order(row.best)))
 
 
 def _way(recipe: Recipe, direction: Array, frame: Array) -> Way:

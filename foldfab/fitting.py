@@ -21,6 +21,8 @@ MARGIN_THICKNESSES = 2.0
 """How much wider than the furniture's sheets the print may be on account of plates and knuckles, in K."""
 THINNER = (3.0, 2.0)
 """Thicknesses of plates that are tried where thicker ones do not fold, mm; thinner ones do not print."""
+HELD_SHARE = 0.125
+"""A hinge holds where its clearance is at most this share of its plates' thickness."""
 SCALE_ROUNDS = 6
 """How often the scale of a print is reduced until it fits the bed."""
 
@@ -58,9 +60,10 @@ def along(recipe: Recipe, direction: Array) -> FoldSolution:
 
 
 def _thicknesses(recipe: Recipe) -> tuple[float, ...]:
-    """The thicknesses of plates that are tried, mm: those that hinges of the recipe's kind can be made in."""
+    """The thicknesses of plates that are tried, mm: those in which hinges of its kind can be made and hold."""
     own = recipe.print
-    thinner = [panel for panel in THINNER if panel < own.thickness and not hinge_problem(own.hinge, panel, None)]
+    able = [panel for panel in THINNER if own.clearance <= HELD_SHARE * panel]
+    thinner = [panel for panel in able if panel < own.thickness and not hinge_problem(own.hinge, panel, None)]
     return (own.thickness, *thinner)
 
 

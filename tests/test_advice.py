@@ -23,6 +23,17 @@ def test_plates_that_are_too_thick(
     assert "with plates of 3 mm" in what_would_help(thick)
 
 
+def test_parts_that_are_too_thick_themselves(
+    recipe: Callable[..., Recipe], board_at: Callable[..., Part], wall_at: Callable[..., Part]
+) -> None:
+    thick = recipe((board_at("ground", 0), board_at("top", 26), wall_at("leg", 0, 0, 26)), slanting=False)
+    parts = tuple(replace(p, size=p.size * [2.0, 1.0, 1.0]) if p.name == "leg" else p for p in thick.parts)
+    own = replace(thick, parts=parts, print=replace(thick.print, own_thickness=True))
+    with pytest.raises(FoldfabError, match=r"cannot carry hinges|no folding solution"):
+        pipeline.foldabilize(own)
+    assert "with plates of 4 mm instead of their own" in what_would_help(own)
+
+
 def test_what_is_pinned_is_named_and_let_go(
     recipe: Callable[..., Recipe], furniture: dict[str, tuple[Part, ...]]
 ) -> None:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from foldfab import pipeline
+from foldfab import directions, pipeline
 from foldfab.directions import HINGE, Row, ranked, settled
 from foldfab.errors import FoldingError
 from foldfab.geometry.arrays import Array
@@ -141,3 +141,26 @@ def test_a_posture_that_is_still_open_does_not_stop_it(recipe: Make) -> None:
     made = free(recipe("table"))
     made = replace(made, print=replace(made.print, posture="auto"))
     assert settled(made).direction is not None
+
+
+def test_directions_are_compared_at_the_thickness_that_is_asked_for(recipe: Make) -> None:
+    """Thinner plates would save more: they are tried only where nothing folds with thicker ones."""
+    made = free(recipe("chair"))
+    rows = ranked(replace(made, print=replace(made.print, may_thin=True)))
+    panels = {row.best.solution.thickness.panel for row in rows if row.best.solution}
+    assert panels == {made.print.thickness}
+
+
+def test_thinner_plates_are_tried_where_nothing_folds(monkeypatch: pytest.MonkeyPatch, recipe: Make) -> None:
+    tried: list[bool] = []
+
+    def refused(made: Recipe, direction: Array) -> object:
+        tried.append(made.print.may_thin)
+        raise FoldingError("too thick")
+
+    monkeypatch.setattr(directions, "along", refused)
+    made = free(recipe("table"))
+    ranked(replace(made, print=replace(made.print, may_thin=True)))
+    assert tried == [False] * 6 + [True] * 6
+    ranked(made)
+    assert tried[12:] == [False] * 6

@@ -29,7 +29,7 @@ def low_table(box: Callable[..., Part]) -> Callable[..., Recipe]:
             box("top", (0, 0, height), (80, 60, 2)),
             box("wall", (0, 0, height / 2), (2, 60, height - 2)),
         )
-        made = PrintOptions(printer=DEFAULT_PRINTER, scale=1.0, may_thin=True)
+        made = PrintOptions(printer=DEFAULT_PRINTER, scale=1.0, clearance=0.25, may_thin=True)
         return Recipe("low", DOWN, parts, FoldOptions(), replace(made, **options))  # type: ignore[arg-type]
 
     return make
@@ -59,6 +59,11 @@ def test_what_the_recipe_says_is_not_thinned(low_table: Callable[..., Recipe]) -
 def test_what_is_too_low_for_the_thinnest_plates_is_refused(low_table: Callable[..., Recipe]) -> None:
     with pytest.raises(FoldingError, match="cannot carry hinges"):
         along(low_table(8.0), DOWN)
+
+
+def test_plates_are_not_made_so_thin_that_hinges_come_apart(low_table: Callable[..., Recipe]) -> None:
+    with pytest.raises(FoldingError, match="cannot carry hinges"):
+        along(low_table(11.5, clearance=0.3), DOWN)
 
 
 def test_hinges_that_need_thick_plates_keep_them_thick(low_table: Callable[..., Recipe]) -> None:

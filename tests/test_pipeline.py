@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -71,6 +72,14 @@ def test_the_same_table_from_meshes_folds_the_same(tmp_path: Path) -> None:
     for solution in solutions:
         assert solution.cost == solutions[-1].cost
         assert [m.patch for m in solution.modifications] == [m.patch for m in solutions[-1].modifications]
+
+
+def test_what_reading_had_to_suppose_stands_in_the_sheet(tmp_path: Path) -> None:
+    recipe = replace(loaded(tmp_path, direction="-z", print={"scale": 0.1}), notes=("no boxes: leg 3 mm",))
+    made = foldfab.fabricate(foldfab.foldabilize(recipe))
+    foldfab.write(made, tmp_path / "print")
+    sheet = json.loads((tmp_path / "print" / "sheet.json").read_text(encoding="utf-8"))
+    assert {"code": "as-read", "text": "no boxes: leg 3 mm"} in sheet["findings"]
 
 
 def test_a_scale_of_ones_own_is_kept(tmp_path: Path) -> None:

@@ -14,6 +14,7 @@ import numpy as np
 from foldfab.export.frames import to_sheet
 from foldfab.fabrication.model import Assembly, Body
 from foldfab.geometry.arrays import Array, Bools, Indices
+from foldfab.geometry.closed import is_closed
 from foldfab.geometry.flat_triangles import flipped, heights
 
 FLAT_MM = 1e-4
@@ -73,17 +74,6 @@ def _drawn_together(points: Array, faces: Indices, short: float) -> Array:
 
 def _rounded(points: Array) -> Array:
     return np.round(points, GRID_DIGITS).astype(np.float32).astype(np.float64) + 0.0
-
-
-def is_closed(faces: Indices) -> bool:
-    """Whether each directed edge of (m, 3) faces occurs once, and once the other way round."""
-    if len(faces) == 0:
-        return False
-    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    base = int(faces.max()) + 1
-    forward, backward = edges @ [base, 1], edges @ [1, base]
-    unique = np.unique(forward)
-    return len(unique) == len(forward) and np.array_equal(unique, np.unique(backward))
 
 
 def bounds(shells: tuple[Shell, ...]) -> tuple[Array, Array]:

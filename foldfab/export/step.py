@@ -15,7 +15,7 @@ from foldfab.errors import FabricationError
 from foldfab.export.colours import COLOURS, HINGE, NAMES
 from foldfab.export.frames import sheet_poses, to_sheet
 from foldfab.export.step_order import canonical
-from foldfab.fabrication.analytic import analytic, require
+from foldfab.fabrication.analytic import analytic, faceted, has_facets, require
 from foldfab.fabrication.model import Assembly, Body, Joint
 from foldfab.fabrication.shapes import Shape, placed
 from foldfab.geometry.arrays import Array
@@ -71,13 +71,28 @@ def step_bytes(assembly: Assembly) -> bytes:
 
 def _body(assembly: Assembly, body: Body, shape: Shape, known: dict[Shape, build123d.Shape]) -> build123d.Solid:
     try:
-        solid = analytic(placed(shape, np.zeros(3), assembly.solution.scaffold.rotation), known)
+        solid = _made(body, placed(shape, np.zeros(3), assembly.solution.scaffold.rotation), known)
+    except FabricationError:
+        if not has_facets(shape):
+            raise
+        # What came as a mesh may be more than this kernel can join to a hinge: then it is as it is printed.
+        solid = _checked(body, faceted(to_sheet(assembly, body.vertices), body.faces))
+    solid.label, solid.color = body.name, _colour(NAMES.index(body.kind))
+    return solid
+
+
+def _made(body: Body, shape: Shape, known: dict[Shape, build123d.Shape]) -> build123d.Solid:
+    try:
+        solid = analytic(shape, known)
     except FabricationError as error:
         raise FabricationError(f"{body.name}: {error}") from error
+    return _checked(body, solid)
+
+
+def _checked(body: Body, solid: build123d.Solid) -> build123d.Solid:
     if abs(solid.volume - body.volume) > VOLUME_SHARE * body.volume:
         text = f"{body.name} has {solid.volume:.2f} mm³ for CAD and {body.volume:.2f} mm³ in print"
         raise FabricationError(f"{text}; try another scale or thickness")
-    solid.label, solid.color = body.name, _colour(NAMES.index(body.kind))
     return solid
 
 

@@ -16,7 +16,8 @@ import numpy as np
 from foldfab.errors import FabricationError, MissingLibraryError
 from foldfab.fabrication import solids
 from foldfab.fabrication.printed import printed
-from foldfab.fabrication.shapes import Box, Cone, Cut, Hull, Placed, Prism, Rod, Shape, Union
+from foldfab.fabrication.shapes import Box, Common, Cone, Cut, Facets, Hull, Placed, Prism, Rod, Shape, Union, Wrap
+from foldfab.geometry.arrays import Array, Indices
 
 if TYPE_CHECKING:
     import build123d
@@ -53,7 +54,21 @@ def analytic(shape: Shape, known: dict[Shape, build123d.Shape] | None = None) ->
         MissingLibraryError: build123d, or a system library that it needs, is absent.
     """
     require()
-    found = _solid(shape, {} if known is None else known)
+    return _one(_solid(shape, {} if known is None else known))
+
+
+def faceted(vertices: Array, faces: Indices) -> build123d.Solid:
+    """The CAD solid of a closed mesh, (n, 3) and (m, 3): flat faces are one, round ones stay facets.
+
+    Raises:
+        FabricationError: the kernel could not make it.
+        MissingLibraryError: build123d, or a system library that it needs, is absent.
+    """
+    require()
+    return _one(_sewn(vertices, faces))
+
+
+def _one(found: build123d.Shape) -> build123d.Solid:
     bodies = found.solids()
     if len(bodies) != 1 or not bodies[0].is_valid or bodies[0].volume <= 0:
         text = f"the CAD kernel failed and left {len(bodies)} bodies where there should be one"
@@ -90,18 +105,34 @@ def _made(shape: Shape, known: dict[Shape, build123d.Shape]) -> build123d.Shape:
             return first.fuse(*others)
         case Cut(body, holes):
             return _solid(body, known).cut(*all_of(holes))
-        case Hull():
-            return _wrapped(shape)
+        case Common(one, other):
+            return b3d.Compound(_solid(one, known).intersect(_solid(other, known)).solids())
+        case Hull() | Wrap() | Facets():
+            # This kernel wraps nothing, and what has facets anyway is what is printed.
+            return _sewn(*solids.mesh(printed(shape)))
         case Placed(body, origin, axes):
             return _solid(body, known).moved(b3d.Location(b3d.Plane(origin, x_dir=axes[0], z_dir=axes[2])))
         case _:
             assert_never(shape)
 
 
-def _wrapped(shape: Hull) -> build123d.Solid:
-    """The hull of the printed parts: this kernel wraps nothing, and what foldfab wraps is flat."""
+def _sewn(vertices: Array, faces: Indices) -> build123d.Solid:
     import build123d as b3d
 
-    vertices, faces = solids.mesh(printed(shape))
     sides = [b3d.Face(b3d.Wire.make_polygon(vertices[face].tolist(), close=True)) for face in faces]
     return b3d.Solid(b3d.Shell(sides)).clean()
+
+
+def has_facets(shape: Shape) -> bool:
+    """Whether a body is partly a mesh that came with the furniture."""
+    match shape:
+        case Facets():
+            return True
+        case Union(parts) | Hull(parts):
+            return any(map(has_facets, parts))
+        case Cut(body, _) | Placed(body, _, _):
+            return has_facets(body)
+        case Common(first, second):
+            return has_facets(first) or has_facets(second)
+        case _:
+            return False

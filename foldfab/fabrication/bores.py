@@ -18,7 +18,7 @@ from foldfab.fabrication.hinges import knuckles
 from foldfab.fabrication.lying import stands
 from foldfab.fabrication.model import Assembly, Finding
 from foldfab.fabrication.printed import printed
-from foldfab.fabrication.shapes import Cut, Hull, Placed, Rod, Shape, Union, cut, placed, prism
+from foldfab.fabrication.shapes import Common, Cut, Hull, Placed, Rod, Shape, Union, cut, placed, prism
 from foldfab.fabrication.solids import SIDES, Solid
 from foldfab.fabrication.styles import style
 from foldfab.fabrication.walls import LINE
@@ -97,6 +97,9 @@ def _holes(shape: Shape, frame: Frame, *, is_hole: bool) -> Iterator[tuple[Rod, 
             yield from [(shape, frame)] if is_hole else []
         case Union(parts) | Hull(parts):
             for part in parts:
+                yield from _holes(part, frame, is_hole=is_hole)
+        case Common(first, second):
+            for part in (first, second):
                 yield from _holes(part, frame, is_hole=is_hole)
         case Cut(body, holes):
             yield from _holes(body, frame, is_hole=is_hole)

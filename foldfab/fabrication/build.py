@@ -22,7 +22,7 @@ from foldfab.fabrication.posture import edge_up, needs_pins
 from foldfab.fabrication.printed import printed
 from foldfab.fabrication.props import planed, propped
 from foldfab.fabrication.relief import relief
-from foldfab.fabrication.shapes import Shape
+from foldfab.fabrication.shapes import Shape, cut
 from foldfab.fabrication.snaps import snap_findings
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.stopping import measured, stopped
@@ -51,24 +51,24 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
     solution = with_breaks(solution, posture)
     tell("solids", 0.0)
     described, findings = _shapes(solution)
-    if solution.scaffold.recipe.print.shape == "own":
-        described, told = own_shapes(solution, described)
-        findings += told
     made = _solids(described)
     times = key_times(solution)
     poses = configuration(solution, times)
     up = edge_up(solution, made, poses) if posture == "edge" else None
     if up is not None:
-        made, taken = planed(made, poses, up, PLANED * solution.thickness.panel)
+        below, taken = planed(made, poses, up, PLANED * solution.thickness.panel)
+        described = {name: cut(shape, [below[name]] if name in below else []) for name, shape in described.items()}
+        made = {**made, **{name: solids.cut(made[name], [printed(below[name])]) for name in below}}
         findings += _planed(taken)
     joints_ = tuple(_joints(solution))
     draft = Assembly(solution, (), joints_, times, {n: poses[n] for n in made}, posture, (), described, up)
     tell("stops", 0.0)
     ramps = relief(solution, made, up) if up is not None else {}
     held = stopped(draft, made, ramps)
+    held, told = own_shapes(draft, held, ramps)
     made, draft = held.made, replace(draft, joints=held.joints, shapes=held.shapes)
-    made, draft, told = _finished(draft, made, ramps)
-    findings += told
+    made, draft, more = _finished(draft, made, ramps)
+    findings += [*told, *more]
     draft = replace(draft, bodies=bodies(solution, made))
     findings += [*snap_findings(solution), *_notes(solution)]
     findings += inspect(draft, made, lambda share: tell("inspection", share), held.gives)
@@ -79,14 +79,15 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
 
 
 def _finished(
-    draft: Assembly, made: dict[str, Solid], ramps: dict[str, list[Solid]]
+    draft: Assembly, made: dict[str, Solid], ramps: dict[str, list[Shape]]
 ) -> tuple[dict[str, Solid], Assembly, list[Finding]]:
     """What is cut once the stops stand: ramps on edge, and bores that are to be open for their pins."""
     solution = draft.solution
     if draft.up is not None:
-        made = {name: solids.tidied(solids.cut(body, ramps[name])) for name, body in made.items()}
+        made = {name: solids.tidied(solids.cut(b, [printed(r) for r in ramps[name]])) for name, b in made.items()}
         props = propped(made, draft.poses, draft.up, solution.thickness.gap)
-        draft = replace(draft, joints=measured(draft, made), propped=bodies(solution, props))
+        sloped = {name: cut(shape, ramps[name]) for name, shape in draft.shapes.items()}
+        draft = replace(draft, shapes=sloped, joints=measured(draft, made), propped=bodies(solution, props))
     elif STYLES[solution.thickness.hinge].has_loose_pin:
         made, shapes = bored(solution, made, draft.shapes)
         draft = replace(draft, shapes=shapes)

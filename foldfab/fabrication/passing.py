@@ -36,8 +36,11 @@ class Passage:
         self._ways: dict[tuple[str, str], Array] = {}
         self._between: dict[tuple[int, int], dict[str, Array]] = {}
 
-    def meets(self, body: str, piece: Solid, name: str, other: Solid, *, above: float) -> bool:
-        """Whether a piece of `body` and the solid of the body `name` ever share more than `above` mm³."""
+    def meets(self, body: str, piece: Solid, name: str, other: Solid, *, above: float, in_between: bool = True) -> bool:
+        """Whether a piece of `body` and the solid of the body `name` ever share more than `above` mm³.
+
+        Without `in_between` at the instants alone.
+        """
         way, corners, box = self._way(name, body), _corners(piece), solids.bounds(other)
         low, high = _reach(corners, way)
         strides = np.linalg.norm(_moved(corners, way[1:]) - _moved(corners, way[:-1]), axis=2).max(axis=1)
@@ -51,6 +54,8 @@ class Passage:
             return False
         if _meets(piece, near, way[is_near], above):
             return True
+        if not in_between:
+            return False
         box = solids.bounds(near)
         for k in np.nonzero(_near(passed, box) & (strides > STRIDE))[0].tolist():
             poses = self._amid(k, strides[k] / STRIDE)

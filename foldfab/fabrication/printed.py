@@ -8,7 +8,7 @@ from typing import assert_never
 import numpy as np
 
 from foldfab.fabrication import solids
-from foldfab.fabrication.shapes import Box, Cone, Cut, Hull, Placed, Prism, Rod, Shape, Union
+from foldfab.fabrication.shapes import Box, Common, Cone, Cut, Facets, Hull, Placed, Prism, Rod, Shape, Union, Wrap
 from foldfab.fabrication.solids import Solid
 
 
@@ -37,10 +37,18 @@ def _made(shape: Shape, known: dict[Shape, Solid]) -> Solid:
             return solids.cone(radius, base, tip, x, z, is_hole=is_hole)
         case Prism(outline, start, end):
             return solids.prism(outline, start, end)
+        case Facets(vertices, faces):
+            return solids.from_mesh(
+                np.frombuffer(vertices).reshape(-1, 3), np.frombuffer(faces, np.int64).reshape(-1, 3)
+            )
+        case Wrap(points):
+            return solids.hull_of(np.array(points))
         case Union(parts):
             return solids.union(all_of(parts))
         case Cut(body, holes):
             return solids.cut(printed(body, known), all_of(holes))
+        case Common(first, second):
+            return solids.common(printed(first, known), printed(second, known))
         case Hull(parts):
             return solids.hull(all_of(parts))
         case Placed(body, origin, axes):

@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from foldfab.fabrication import solids
+from foldfab.fabrication import shapes, solids
 from foldfab.fabrication.posture import ON_BED, bed_turn
+from foldfab.fabrication.shapes import Shape
 from foldfab.fabrication.solids import Outline, Solid
 from foldfab.geometry.arrays import Array
 
@@ -23,14 +24,16 @@ TALL = 8.0
 """A part higher than this over the bed gets no prop: slicers build better towers, mm."""
 ASIDE = 1.25
 """How far a prop keeps away from other parts, in clearances: what is tidied may move a little."""
+FAR = 1000.0
+"""Beyond every print, mm."""
 LEAST = 0.5
 """A part lower than this over the bed gets none either: it is not worth the breaking, mm."""
 
 
 def planed(
     made: dict[str, Solid], poses: dict[str, Array], up: Array, most: float
-) -> tuple[dict[str, Solid], dict[str, float]]:
-    """The bodies flush at the bed, in the open posture, and by name what that took off, mm.
+) -> tuple[dict[str, Shape], dict[str, float]]:
+    """What has to go for the bodies to be flush at the bed, open posture, and what that takes off, mm; by name.
 
     All are cut where the highest body begins that begins at most `most` mm above the bed.
     """
@@ -38,11 +41,12 @@ def planed(
     placed = {name: solids.moved(body, stand[name]) for name, body in made.items()}
     low = {name: float(solids.bounds(body)[0][2]) for name, body in placed.items()}
     level = max(z for z in low.values() if z - min(low.values()) <= most)
-    found, taken = dict(made), dict[str, float]()
+    found, taken = dict[str, Shape](), dict[str, float]()
     for name in sorted(made):
         if level - low[name] > ON_BED:
-            flush = solids.checked(placed[name].trim_by_plane((0.0, 0.0, 1.0), level))
-            found[name], taken[name] = solids.moved(flush, _inverse(stand[name])), level - low[name]
+            back = _inverse(stand[name])
+            below = shapes.box((-FAR, -FAR, level - FAR), (FAR, FAR, level))
+            found[name], taken[name] = shapes.placed(below, back[:3, 3], back[:3, :3].T), level - low[name]
     return found, taken
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from foldfab.fabrication import solids
 from foldfab.fabrication.hinges import Knuckles, knuckles
 from foldfab.fabrication.plates import axis_of
+from foldfab.fabrication.shapes import Shape, cone, cut, placed, union, wrap
 from foldfab.fabrication.solids import Solid
 from foldfab.folding.mechanism import frames
 from foldfab.folding.model import Chain, FoldSolution, Thickness
@@ -52,12 +53,12 @@ class _Shelf:
     """x of the face of its own panel beside which an inserted hinge stands, mm; 0 for a hinge in mid-plane."""
 
 
-def relief(solution: FoldSolution, made: dict[str, Solid], up: Array) -> dict[str, list[Solid]]:
+def relief(solution: FoldSolution, made: dict[str, Solid], up: Array) -> dict[str, list[Shape]]:
     """By body, what is cut from it, open, to have ramps under all knuckles; `up` (3,) is a hinge direction.
 
     Hinges of other kinds than the cone stay as they are.
     """
-    cutters: dict[str, list[Solid]] = {name: [] for name in made}
+    cutters: dict[str, list[Shape]] = {name: [] for name in made}
     if solution.thickness.hinge != "cone":
         return cutters
     for chain in solution.chains:
@@ -66,7 +67,7 @@ def relief(solution: FoldSolution, made: dict[str, Solid], up: Array) -> dict[st
             way = 1.0 if float(axes[1] @ up) > 0 else -1.0
             low = float((solids.mesh(made[name])[0] @ up).min() - origin @ up) * way
             faces = [f for f in shelf.faces if (f[0] - low) * way > STANDS]
-            cutters[name] += [solids.placed(_cutter(shelf, face, way), origin, axes) for face in faces]
+            cutters[name] += [placed(_cutter(shelf, face, way), origin, axes) for face in faces]
     return cutters
 
 
@@ -129,7 +130,7 @@ def _ceilings(marks: Knuckles, span: Array, thickness: Thickness, way: float) ->
     return tuple((t, round(t, 6) in own) for t in inside)
 
 
-def _cutter(shelf: _Shelf, face: tuple[float, bool], way: float) -> Solid:
+def _cutter(shelf: _Shelf, face: tuple[float, bool], way: float) -> Shape:
     """What lies below the ramp over one lower face, without the cone that points down from it."""
     y, has_cone = face
     if shelf.surface:
@@ -141,14 +142,14 @@ def _cutter(shelf: _Shelf, face: tuple[float, bool], way: float) -> Solid:
     else:
         ramps = [_ramp(shelf, y, way, shelf.x, 0.0)]
     if not has_cone:
-        return solids.union(ramps)
+        return union(ramps)
     radius, far = shelf.cone + KEPT, shelf.far + CLEAR
     tip = y - way * STEEP * radius
-    kept = solids.cone(2 * far, tip + way * STEEP * 2 * far, tip, *shelf.axis)
-    return solids.cut(solids.union(ramps), [kept])
+    kept = cone(2 * far, tip + way * STEEP * 2 * far, tip, *shelf.axis)
+    return cut(union(ramps), [kept])
 
 
-def _ramp(shelf: _Shelf, y: float, way: float, x: tuple[float, float], sideways: float) -> Solid:
+def _ramp(shelf: _Shelf, y: float, way: float, x: tuple[float, float], sideways: float) -> Shape:
     """What lies below a plane that rises from the root on, and `sideways` as much from the first x on."""
     corners = []
     for across in x:
@@ -156,4 +157,4 @@ def _ramp(shelf: _Shelf, y: float, way: float, x: tuple[float, float], sideways:
             rise = STEEP * (out - KEPT + sideways * abs(across - x[0]))
             z = shelf.root + shelf.away * out
             corners += [[across, y - way * CLEAR, z], [across, y + way * rise, z]]
-    return solids.hull_of(np.array(corners))
+    return wrap(np.array(corners))

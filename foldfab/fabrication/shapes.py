@@ -1,4 +1,4 @@
-"""What a printed body is made of: a tree of boxes, rods, cones and prisms, joined, cut, wrapped and placed.
+"""What a printed body is made of: a tree of boxes, rods, cones, prisms and meshes, joined, cut, wrapped and placed.
 
 A tree is a description: `printed.py` makes a solid of facets of it, `analytic.py` one with true cylinders and cones.
 Trees are values: equal ones are equal shapes, so that whoever evaluates them does so once. Lengths in mm.
@@ -12,7 +12,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from foldfab.geometry.arrays import Array
+from foldfab.geometry.arrays import Array, Indices
 
 Point: TypeAlias = tuple[float, float, float]
 
@@ -40,7 +40,7 @@ class Rod:
 
 @dataclass(frozen=True, slots=True)
 class Cone:
-    """A 45° cone along y around (x, z), `radius` wide at `base` and pointed at `tip`."""
+    """A cone along y around (x, z), `radius` wide at `base` and pointed at `tip`."""
 
     radius: float
     base: float
@@ -61,6 +61,23 @@ class Prism:
 
 
 @dataclass(frozen=True, slots=True)
+class Facets:
+    """A closed mesh, as it came with the furniture: what is equal byte for byte is an equal shape."""
+
+    vertices: bytes
+    """(n, 3) 64-bit floats, mm."""
+    faces: bytes
+    """(m, 3) 64-bit integers, counter-clockwise seen from outside."""
+
+
+@dataclass(frozen=True, slots=True)
+class Wrap:
+    """The convex hull of points."""
+
+    points: tuple[Point, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Union:
     """All parts as one."""
 
@@ -73,6 +90,14 @@ class Cut:
 
     body: Shape
     holes: tuple[Shape, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Common:
+    """What two bodies share."""
+
+    first: Shape
+    second: Shape
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +116,7 @@ class Placed:
     axes: tuple[Point, Point, Point]
 
 
-Shape: TypeAlias = Box | Rod | Cone | Prism | Union | Cut | Hull | Placed
+Shape: TypeAlias = Box | Rod | Cone | Prism | Facets | Wrap | Union | Cut | Common | Hull | Placed
 
 
 def box(low: Iterable[float], high: Iterable[float]) -> Shape:
@@ -105,13 +130,23 @@ def rod(radius: float, start: float, end: float, x: float, z: float, *, is_hole:
 
 
 def cone(radius: float, base: float, tip: float, x: float, z: float, *, is_hole: bool = False) -> Shape:
-    """A 45° cone along y around (x, z) with its mouth at `base`, pointing to `tip`."""
+    """A cone along y around (x, z) with its mouth at `base`, pointing to `tip`: of 45° where it is as high as wide."""
     return Cone(float(radius), float(base), float(tip), float(x), float(z), is_hole)
 
 
 def prism(outline: Iterable[tuple[float, float]], start: float, end: float) -> Shape:
     """A simple polygon of points (x, z) drawn along +y from `start` to `end`."""
     return Prism(tuple((float(x), float(z)) for x, z in outline), float(start), float(end))
+
+
+def facets(vertices: Array, faces: Indices) -> Shape:
+    """A closed mesh: vertices (n, 3), mm, and faces (m, 3), counter-clockwise seen from outside."""
+    return Facets(np.asarray(vertices, np.float64).tobytes(), np.asarray(faces, np.int64).tobytes())
+
+
+def wrap(points: Array) -> Shape:
+    """The convex hull of points (n, 3)."""
+    return Wrap(tuple(_point(point) for point in points))
 
 
 def union(parts: list[Shape]) -> Shape:
@@ -122,6 +157,11 @@ def union(parts: list[Shape]) -> Shape:
 def cut(body: Shape, holes: list[Shape]) -> Shape:
     """The body without the holes."""
     return Cut(body, tuple(holes)) if holes else body
+
+
+def common(first: Shape, second: Shape) -> Shape:
+    """What two bodies share."""
+    return Common(first, second)
 
 
 def hull(parts: list[Shape]) -> Shape:

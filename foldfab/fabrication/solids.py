@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from typing import TypeAlias
 
 import numpy as np
-from manifold3d import CrossSection, Error, FillRule, JoinType, Manifold, Mesh, OpType
+from manifold3d import CrossSection, Error, FillRule, JoinType, Manifold, Mesh64, OpType
 
 from foldfab.errors import FabricationError
 from foldfab.geometry.arrays import Array, Indices
@@ -83,9 +83,39 @@ def grown(outline: Outline, margin: float) -> Outline:
     return outline.offset(margin, JoinType.Miter, 2.0)
 
 
+def nothing() -> Outline:
+    """An empty outline."""
+    return CrossSection()
+
+
+def silhouette(body: Solid) -> Outline:
+    """What a body covers seen along z."""
+    return CrossSection(list(body.project().to_polygons()), FillRule.Positive)
+
+
+def between(body: Solid, low: float, high: float) -> Solid:
+    """What of a body lies between two heights."""
+    least, most = (float(corner[2]) for corner in bounds(body))
+    if least < low < most:
+        body = body.trim_by_plane((0.0, 0.0, 1.0), low)
+    if least < high < most:
+        body = body.trim_by_plane((0.0, 0.0, -1.0), -high)
+    return checked(body) if least < high and most > low else Manifold()
+
+
+def shifted(body: Solid, height: float) -> Solid:
+    """The body, higher."""
+    return body.translate((0.0, 0.0, height))
+
+
 def covered(triangles: Array) -> Outline:
     """What triangles (n, 3, 2), counter-clockwise, cover together."""
     return CrossSection(list(triangles), FillRule.NonZero)
+
+
+def islands(outline: Outline) -> list[Outline]:
+    """The pieces of an outline that hang together, none for an empty one."""
+    return [piece for piece in outline.decompose() if not piece.is_empty()]
 
 
 def rectangle(middle: Array, sides: Array) -> Outline:
@@ -98,6 +128,11 @@ def section(body: Solid, height: float) -> Outline:
     return body.slice(height)
 
 
+def raised(outline: Outline, low: float, high: float) -> Solid:
+    """What stands over an outline of x and y, between two heights."""
+    return outline.extrude(high - low).translate((0.0, 0.0, low))
+
+
 def union(parts: list[Solid]) -> Solid:
     """All parts as one."""
     return checked(Manifold.batch_boolean(parts, OpType.Add)) if len(parts) > 1 else parts[0]
@@ -106,6 +141,11 @@ def union(parts: list[Solid]) -> Solid:
 def cut(body: Solid, holes: list[Solid]) -> Solid:
     """The body without the holes."""
     return checked(body - Manifold.batch_boolean(holes, OpType.Add)) if holes else body
+
+
+def common(a: Solid, b: Solid) -> Solid:
+    """What two bodies share."""
+    return checked(a ^ b)
 
 
 def placed(body: Solid, origin: Array, axes: Array) -> Solid:
@@ -214,7 +254,7 @@ def mesh(body: Solid) -> tuple[Array, Indices]:
 
 def from_mesh(vertices: Array, faces: Indices) -> Solid:
     """The solid of a closed mesh."""
-    return checked(Manifold(Mesh(np.asarray(vertices, np.float32), np.asarray(faces, np.uint32))))
+    return checked(Manifold(Mesh64(np.array(vertices, np.float64, order="C"), np.array(faces, np.uint64, order="C"))))
 
 
 def checked(body: Solid) -> Solid:

@@ -9,7 +9,7 @@ from foldfab.fabrication.model import Assembly, Joint, Latch
 from foldfab.fabrication.shapes import Shape
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.stops import Stop, rests, stops
-from foldfab.fabrication.trial import Fitted, Trial
+from foldfab.fabrication.trial import Change, Fitted, Trial
 from foldfab.folding.model import Chain
 
 
@@ -24,9 +24,11 @@ class Stopped:
     """With what each reaches."""
     gives: dict[str, list[Solid]]
     """By panel, what of it gives way while it passes its latches."""
+    changes: dict[str, list[Change]]
+    """By body, what stops and latches made of it."""
 
 
-def stopped(assembly: Assembly, made: dict[str, Solid], ramps: Mapping[str, list[Solid]]) -> Stopped:
+def stopped(assembly: Assembly, made: dict[str, Solid], ramps: Mapping[str, list[Shape]]) -> Stopped:
     """The bodies with stops and, where they are asked for, latches.
 
     `assembly` needs no bodies yet, but the shapes of which `made` was made; `ramps` is what will be cut from bodies.
@@ -48,17 +50,18 @@ def stopped(assembly: Assembly, made: dict[str, Solid], ramps: Mapping[str, list
                 trial.take(best)
                 taken[name] = (*taken[name], best.stop.kind)
                 latches |= {name: trial.latch(best.stop)} if is_latched and best.stop.detent else {}
-    joints = tuple(
-        replace(j, stop_deg=_angles(trial, j.name), stops=taken[j.name], latch=latches.get(j.name))
-        for j in assembly.joints
-    )
-    return Stopped(trial.made, trial.shapes, joints, trial.gives)
+    joints = tuple(replace(j, stops=taken[j.name], latch=latches.get(j.name)) for j in reached(trial, assembly.joints))
+    return Stopped(trial.made, trial.shapes, joints, trial.gives, trial.changes)
 
 
 def measured(assembly: Assembly, made: dict[str, Solid]) -> tuple[Joint, ...]:
     """The joints with what each reaches on bodies that were changed after they got their stops."""
-    trial = Trial(assembly, made)
-    return tuple(replace(j, stop_deg=_angles(trial, j.name)) for j in assembly.joints)
+    return reached(Trial(assembly, made), assembly.joints)
+
+
+def reached(trial: Trial, joints: tuple[Joint, ...]) -> tuple[Joint, ...]:
+    """The joints with how far past their ends they turn."""
+    return tuple(replace(j, stop_deg=_angles(trial, j.name)) for j in joints)
 
 
 def _hinges(assembly: Assembly) -> Iterator[tuple[Chain, int, str]]:

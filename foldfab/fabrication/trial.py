@@ -7,7 +7,7 @@ first.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -22,7 +22,7 @@ from foldfab.fabrication.passing import Passage, seen_from
 from foldfab.fabrication.plates import ROOT_SHARE, axis_of
 from foldfab.fabrication.posture import needs_pins, printed_turn
 from foldfab.fabrication.printed import printed
-from foldfab.fabrication.shapes import cut, union
+from foldfab.fabrication.shapes import Shape, cut, union
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.stops import Stop
 from foldfab.fabrication.turning import PAST, meets, stops_at, turn
@@ -31,6 +31,22 @@ from foldfab.geometry.arrays import Array
 
 ROUNDING = 0.01
 """By how much a print may seem to grow, mm."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Change:
+    """What a stop or a latch makes of a body."""
+
+    is_added: bool
+    """Whether there is more of it, or less."""
+    shape: Shape
+
+
+def changed(shape: Shape, changes: Iterable[Change]) -> Shape:
+    """A body of that shape with all changes, in their order."""
+    for change in changes:
+        shape = union([shape, change.shape]) if change.is_added else cut(shape, [change.shape])
+    return shape
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,9 +61,13 @@ class Trial:
     """The bodies of a print as they stand, to try pieces on."""
 
     def __init__(
-        self, assembly: Assembly, made: dict[str, Solid], ramps: Mapping[str, list[Solid]] = MappingProxyType({})
+        self,
+        assembly: Assembly,
+        made: dict[str, Solid],
+        ramps: Mapping[str, list[Shape]] = MappingProxyType({}),
+        gives: Mapping[str, list[Solid]] = MappingProxyType({}),
     ) -> None:
-        """`ramps` is what will be cut from bodies once they have their stops."""
+        """`ramps` is what will be cut from bodies once they have their stops, `gives` what gives way already."""
         self.assembly, self.made, self.shapes = assembly, made, dict(assembly.shapes)
         self._plain = made
         self._passage = Passage(assembly.solution, instants(assembly))
@@ -58,9 +78,11 @@ class Trial:
         self._extent = np.min([c[0] for c in corners], axis=0), np.max([c[1] for c in corners], axis=0)
         self._feet = list(_feet(assembly))
         self.turns = {j.name: turn(j, *(self.poses[p] for p in j.parts)) for j in assembly.joints}
-        self._ramps = ramps
-        self.gives: dict[str, list[Solid]] = {}
+        self._ramps = {name: [printed(ramp) for ramp in some] for name, some in ramps.items()}
+        self.gives = {name: list(some) for name, some in gives.items()}
         """By panel, what of it gives way while it passes its latches."""
+        self.changes: dict[str, list[Change]] = {name: [] for name in made}
+        """By body, what stops and latches made of it, in their order."""
         self._parts = {j.name: j.parts for j in assembly.joints}
 
     def angle(self, joint: str, *, is_folded: bool) -> float | None:
@@ -74,7 +96,7 @@ class Trial:
 
     def fitted(self, stop: Stop) -> Fitted | None:
         """The bodies with a stop; None where a body would fall apart, or a third one or the bed is in its way."""
-        if not self._fits(stop) or (stop.cut is not None and self._is_taken(stop)):
+        if not self._fits(stop.body, printed(stop.added)) or (stop.cut is not None and self._is_taken(stop)):
             return None
         others = [name for name in self.made if name not in (stop.body, stop.other)]
         if not self._is_clear(stop, {name: self.made[name] for name in others}):
@@ -109,13 +131,58 @@ class Trial:
     def take(self, fitted: Fitted) -> None:
         """Makes a stop."""
         stop = fitted.stop
-        self.made = {**self.made, **fitted.changed}
-        self.shapes[stop.body] = union([self.shapes[stop.body], stop.added])
+        self._change(stop.body, Change(True, stop.added))
         if stop.cut is not None:
-            self.shapes[stop.other] = cut(self.shapes[stop.other], [stop.cut])
+            self._change(stop.other, Change(False, stop.cut))
         for name, solid in fitted.changed.items():
-            low, high = self._printed(name, solid)
-            self._extent = np.minimum(low, self._extent[0]), np.maximum(high, self._extent[1])
+            self._make(name, solid)
+
+    def reshape(self, name: str, shape: Shape) -> str:
+        """Makes a body of another shape, or says why it cannot be: then it stays as it is."""
+        solid = solids.tidied(printed(shape))
+        problem = self._problem(name, solid)
+        if not problem:
+            self.shapes[name] = shape
+            self._make(name, solid)
+        return problem
+
+    def _make(self, name: str, solid: Solid) -> None:
+        self.made = {**self.made, name: solid}
+        low, high = self._printed(name, solid)
+        self._extent = np.minimum(low, self._extent[0]), np.maximum(high, self._extent[1])
+
+    def _change(self, name: str, change: Change) -> None:
+        self.changes[name].append(change)
+        self.shapes[name] = changed(self.shapes[name], [change])
+
+    def _problem(self, name: str, solid: Solid) -> str:
+        """Why a body cannot become another solid, or nothing."""
+        if solids.pieces(solid) != 1:
+            return "falls apart"
+        if not solids.stays_closed(solid):
+            return "touches itself along an edge"
+        if self._thin_sides(name, solid) > self._thin_sides(name, self.made[name]):
+            return "has walls thinner than a line"
+        if not self._fits(name, solid):
+            return "does not fit the bed"
+        rigid = solids.cut(solid, self.gives.get(name, []))
+        for other in self.made:
+            rest = solids.cut(self.made[other], self.gives.get(other, []))
+            # The room that it fills was looked for between the instants as well.
+            if other != name and not self._is_apart(name, rigid, other, rest, in_between=False):
+                return f"meets {other}"
+        return self._unstopped(name, solid)
+
+    def _unstopped(self, name: str, solid: Solid) -> str:
+        """That a hinge of a body would stop no more, or nothing."""
+        for joint in self.assembly.joints:
+            if name in joint.parts:
+                first, second = (solid if part == name else self.made[part] for part in joint.parts)
+                for is_folded in (False, True):
+                    was = self.is_prompt(joint.name, is_folded=is_folded)
+                    if was and not meets(self.turns[joint.name], first, second, PAST, is_folded=is_folded):
+                        return f"leaves {joint.name} without a stop"
+        return ""
 
     def latch(self, stop: Stop) -> Latch | None:
         """Makes the latch of a stop that is made, where it holds and lets go."""
@@ -129,8 +196,8 @@ class Trial:
         found = tried(self.turns[stop.joint], base, panel, stop.detent, is_base_first=is_base_first)
         if found is not None:
             self.made = {**self.made, stop.body: panel, stop.other: base}
-            self.shapes[stop.body] = cut(self.shapes[stop.body], [stop.detent.slit])
-            self.shapes[stop.other] = union([self.shapes[stop.other], stop.detent.ridges])
+            self._change(stop.body, Change(False, stop.detent.slit))
+            self._change(stop.other, Change(True, stop.detent.ridges))
             self.gives.setdefault(stop.body, []).append(printed(stop.detent.pressed))
         return found
 
@@ -147,7 +214,7 @@ class Trial:
         changed = {name: solids.tidied(solid) for name, solid in ((stop.body, body), (stop.other, other))}
         return changed if all(solids.pieces(s) == 1 and solids.stays_closed(s) for s in changed.values()) else None
 
-    def _thin_sides(self, name: str, solid: Solid, near: tuple[Array, Array]) -> int:
+    def _thin_sides(self, name: str, solid: Solid, near: tuple[Array, Array] | None = None) -> int:
         return thin_sides(solids.cut(solid, self._ramps.get(name, [])), near)
 
     def _is_clear(self, stop: Stop, others: Mapping[str, Solid]) -> bool:
@@ -167,12 +234,12 @@ class Trial:
                 return True
         return any(name not in mine and solids.overlap(hole, solid) > CLASH for name, solid in self.made.items())
 
-    def _fits(self, stop: Stop) -> bool:
-        """Whether the print, which may fit its bed just so, still fits it."""
+    def _fits(self, name: str, added: Solid) -> bool:
+        """Whether the print, which may fit its bed just so, still fits it with a piece of a body."""
         if needs_pins(self.assembly.posture):
             return True
         bed = np.array(self.assembly.solution.scaffold.recipe.print.printer.build_volume)
-        low, high = self._printed(stop.body, printed(stop.added))
+        low, high = self._printed(name, added)
         low, high = np.minimum(low, self._extent[0]), np.maximum(high, self._extent[1])
         size, now = high - low, self._extent[1] - self._extent[0]
         return bool((size <= bed).all() or (size[[1, 0, 2]] <= bed).all() or (size <= now + ROUNDING).all())
@@ -183,14 +250,14 @@ class Trial:
         points = (solids.mesh(solid)[0] @ pose[:3, :3].T + pose[:3, 3]) @ self._turn.T
         return points.min(0), points.max(0)
 
-    def _is_apart(self, body: str, added: Solid, name: str, other: Solid) -> bool:
+    def _is_apart(self, body: str, added: Solid, name: str, other: Solid, *, in_between: bool = True) -> bool:
         """Whether a piece of a body stays apart from another body all along the fold."""
         clearance = self.assembly.solution.thickness.gap
         key = 0 if self._is_open else -1
         piece = solids.moved(added, seen_from(self.poses[name][key], self.poses[body][key]))
         if solids.gap(piece, other, clearance) < GAP_SHARE * clearance:
             return False
-        return not self._passage.meets(body, added, name, other, above=CLASH / 2)
+        return not self._passage.meets(body, added, name, other, above=CLASH / 2, in_between=in_between)
 
 
 def _around(pieces: list[Solid]) -> tuple[Array, Array]:

@@ -40,6 +40,22 @@ def contacts(parts: tuple[Part, ...], hardware: tuple[Mesh, ...]) -> Contacts:
     return Contacts(frozenset(held - {_pair(parts, i, j) for i, j in close}), frozenset(apart - held))
 
 
+def heaps(meshes: list[Mesh]) -> list[list[int]]:
+    """Which meshes, by their numbers, hang together by touching; by the first of each."""
+    if not meshes:
+        return []
+    low, high = (np.array([side(mesh.vertices, axis=0) for mesh in meshes]) for side in (np.min, np.max))
+    within = reach(high - low)
+    i, j = near_pairs((low - within / 2, high + within / 2), (low - within / 2, high + within / 2))
+    near = [(a, b) for a, b in zip(i.tolist(), j.tolist(), strict=True) if a < b]
+    surfaces = [mesh.vertices[mesh.faces] for mesh in meshes]
+    heap = list(range(len(meshes)))
+    for a, b in near:
+        if heap[a] != heap[b] and are_close(surfaces[a], surfaces[b], within):
+            heap = [heap[a] if other == heap[b] else other for other in heap]
+    return [[k for k, other in enumerate(heap) if other == first] for first in dict.fromkeys(heap)]
+
+
 def told(found: Contacts) -> tuple[str, ...]:
     """Notes on what was found."""
     notes = list[str]()

@@ -13,10 +13,12 @@ from foldfab.intake.inside import inside
 from foldfab.intake.limits import fail
 from foldfab.intake.meshes import joined
 from foldfab.intake.model import Body, Shapes, Wishes
+from foldfab.intake.naming import part_name
 from foldfab.intake.understand import Grouping, Understood, named, parts
 from foldfab.recipe.build import Gathered, box_part, flagged
 from foldfab.recipe.edit import check_patterns
-from foldfab.recipe.form import MILLIMETRES, PartForm, RecipeForm
+from foldfab.recipe.fields import MILLIMETRES
+from foldfab.recipe.form import PartForm, RecipeForm
 from foldfab.recipe.model import FoldOptions, Part, PrintOptions, Recipe
 from foldfab.recipe.names import fits, folder_name, folder_name_problem, same_name
 from foldfab.recipe.printers import DEFAULT_PRINTER
@@ -92,12 +94,20 @@ def _of_model(path: Path, form: RecipeForm, wishes: Wishes) -> tuple[Understood,
     merged = {part.name: part.merge for part in flags.values() if part.merge is not None}
     ignored = (*wishes.ignore, *(part.name for part in flags.values() if part.ignore))
     kept = tuple(part.name for part in flags.values() if not part.ignore)
-    held = parts(file, bodies, wishes, Grouping(ignored, tuple(merged.items()), kept))
+    heaps = frozenset(part.name for part in flags.values() if part.by_contact)
+    held = parts(file, bodies, wishes, Grouping(ignored, tuple(merged.items()), heaps, kept))
     found = held.parts
     for flag in flags.values():
-        pattern = merged.get(flag.name, flag.name)
-        found = tuple(flagged(p, flag, form.fold.shrink_steps) if fits(p.name, pattern) else p for p in found)
+        is_meant = _meant(flag, held)
+        found = tuple(flagged(p, flag, form.fold.shrink_steps) if p.name in is_meant else p for p in found)
     return replace(held, parts=found, notes=(*first, *held.notes)), names
+
+
+def _meant(flag: PartForm, held: Understood) -> set[str]:
+    """The names of the parts that an entry of the recipe is about."""
+    if flag.merge is not None:
+        return {name for name, asked in held.made.items() if asked == part_name(flag.merge)}
+    return {part.name for part in held.parts if fits(part.name, flag.name)}
 
 
 def _of_mesh(file: Path, name: str, wishes: Wishes, notes: list[str]) -> Part:

@@ -10,7 +10,7 @@ from foldfab.errors import Problem, RecipeError
 from foldfab.geometry.arrays import Array
 from foldfab.intake.meshes import placed
 from foldfab.intake.model import Body, Shapes, Up, Wishes
-from foldfab.recipe.form import MILLIMETRES
+from foldfab.recipe.fields import MILLIMETRES
 from foldfab.recipe.problems import shown
 
 LARGEST_FURNITURE = 30_000.0

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
 
 import numpy as np
 
 from foldfab.geometry.arrays import Array
+from foldfab.intake.contacts import heaps
 from foldfab.intake.distance import off_box
 from foldfab.intake.hardware import Sizes, sizes
 from foldfab.intake.limits import check_bodies, fail
@@ -19,7 +21,7 @@ from foldfab.intake.notes import listed, note
 from foldfab.intake.outline import Outline, main_axes, outline
 from foldfab.intake.scale import check, in_millimetres
 from foldfab.intake.tight import fitted, settled
-from foldfab.recipe.form import FARTHEST, SMALLEST_SIZE
+from foldfab.recipe.fields import FARTHEST, SMALLEST_SIZE
 from foldfab.recipe.model import Mesh, Part
 from foldfab.recipe.names import fits
 
@@ -43,6 +45,8 @@ class Grouping:
     """Patterns such as `screw*`."""
     merged: tuple[tuple[str, str], ...] = ()
     """Pattern, and the name of the part that all that fit it become."""
+    by_contact: frozenset[str] = frozenset()
+    """Patterns of which only bodies that touch become one part; each heap is a part."""
     kept: tuple[str, ...] = ()
     """Patterns of what is no hardware, however small."""
 
@@ -56,6 +60,8 @@ class Understood:
     """What had to be supposed or left out."""
     hardware: tuple[Mesh, ...]
     """What was left out because it is small, mm."""
+    made: Mapping[str, str] = field(default_factory=dict)
+    """By name of a part that bodies were merged to, the name that was asked for."""
 
 
 def named(path: Path | str, shapes: Shapes, wishes: Wishes) -> tuple[list[Body], tuple[str, ...]]:
@@ -76,17 +82,17 @@ def parts(path: Path | str, bodies: list[Body], wishes: Wishes, grouping: Groupi
         RecipeError: nothing is left, it is too large to be furniture, or many stand in one place.
     """
     notes: list[str] = []
-    bodies = _merged(_without(bodies, grouping.ignored, notes), grouping.merged)
+    bodies, made = _merged(_without(bodies, grouping.ignored, notes), grouping)
     if not bodies:
         fail(path, "nothing is left of it; ignore less")
     measured = sizes(bodies, wishes.smallest)
-    bodies, hardware = _without_hardware(bodies, measured, grouping, notes)
+    bodies, hardware = _without_hardware(bodies, measured, {*grouping.kept, *made}, notes)
     known = measured.outlines
     outlines = [found for b in bodies if (found := known[b.name] if b.name in known else outline(b)) is not None]
     note(notes, "without area, left out", {b.name for b in bodies} - {found.body.name for found in outlines})
     if not outlines:
         fail(path, "nothing in it has an area")
-    return Understood(_boxed(path, outlines, notes), tuple(notes), tuple(body.mesh for body in hardware))
+    return Understood(_boxed(path, outlines, notes), tuple(notes), tuple(body.mesh for body in hardware), made)
 
 
 def _named(path: Path | str, bodies: tuple[Body, ...], split: bool) -> list[Body]:
@@ -108,20 +114,37 @@ def _without(bodies: list[Body], ignored: tuple[str, ...], notes: list[str]) -> 
     return [body for body in bodies if body.name not in gone]
 
 
-def _merged(bodies: list[Body], merged: tuple[tuple[str, str], ...]) -> list[Body]:
-    """Those that fit a pattern as one, where the first of them stood; the first pattern that fits decides."""
-    groups: dict[str, list[Body]] = {}
+def _merged(bodies: list[Body], grouping: Grouping) -> tuple[list[Body], dict[str, str]]:
+    """Those that fit a pattern as one, where the first of them stood; the first pattern that fits decides.
+
+    With them, by its name what a merged part was asked to be called: heaps beyond the first get a number.
+    """
+    groups: dict[tuple[str, int], list[Body]] = {}
+    asked: set[str] = set()
+    heap = {(pattern, name): n for pattern in grouping.by_contact for n, name in _heaps(bodies, pattern)}
     for body in bodies:
-        name = next((name for pattern, name in merged if fits(body.name, pattern)), None)
-        groups.setdefault(body.name if name is None else part_name(name), []).append(body)
-    return [Body(name, joined([body.mesh for body in some])) for name, some in groups.items()]
+        name, number = body.name, 0
+        found = next((both for both in grouping.merged if fits(body.name, both[0])), None)
+        if found is not None:
+            name, number = part_name(found[1]), heap.get((found[0], body.name), 0)
+            asked.add(name)
+        groups.setdefault((name, number), []).append(body)
+    fresh = dict(zip(groups, unique([name for name, _ in groups]), strict=True))
+    made = {fresh[key]: key[0] for key in groups if key[0] in asked}
+    return [Body(fresh[key], joined([body.mesh for body in some])) for key, some in groups.items()], made
+
+
+def _heaps(bodies: list[Body], pattern: str) -> Iterator[tuple[int, str]]:
+    """The number of the heap of touching bodies that each body that fits a pattern is in, and its name."""
+    some = [body for body in bodies if fits(body.name, pattern)]
+    for number, heap in enumerate(heaps([body.mesh for body in some])):
+        yield from ((number, some[index].name) for index in heap)
 
 
 def _without_hardware(
-    bodies: list[Body], measured: Sizes, grouping: Grouping, notes: list[str]
+    bodies: list[Body], measured: Sizes, kept: set[str], notes: list[str]
 ) -> tuple[list[Body], list[Body]]:
     """What is left, and what is not."""
-    kept = (*grouping.kept, *(name for _, name in grouping.merged))
     gone = {name for name in measured.small if not any(fits(name, pattern) for pattern in kept)}
     note(notes, f"no longer than {measured.limit:.4g} mm, left out as hardware (--smallest)", gone)
     return [body for body in bodies if body.name not in gone], [body for body in bodies if body.name in gone]

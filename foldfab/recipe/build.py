@@ -10,16 +10,8 @@ import numpy as np
 from foldfab.geometry.arrays import Array
 from foldfab.recipe.clearance import profile
 from foldfab.recipe.contacts import BY_BOXES, Contacts, beside, resolved
-from foldfab.recipe.form import (
-    MILLIMETRES,
-    BoxForm,
-    FoldForm,
-    PartForm,
-    PatternForm,
-    PrinterForm,
-    PrintForm,
-    RecipeForm,
-)
+from foldfab.recipe.fields import MILLIMETRES
+from foldfab.recipe.form import BoxForm, FoldForm, PartForm, PatternForm, PrinterForm, PrintForm, RecipeForm
 from foldfab.recipe.model import USUAL_THICKNESS, FoldOptions, Part, Pattern, Printer, PrintOptions, Recipe
 from foldfab.recipe.patterns import snapped
 from foldfab.recipe.printers import PRINTERS
@@ -115,8 +107,10 @@ def flagged(part: Part, form: PartForm, steps: int) -> Part:
         "pin": None if form.pin is None else _pattern(form.pin, steps),
         "forbid": tuple(_pattern(pattern, steps) for pattern in form.forbid),
         "thickness": None if form.thickness is None else float(form.thickness),
+        "look": form.shape,
     }
-    return replace(part, **{key: value for key, value in flags.items() if key in form.model_fields_set})
+    said = form.model_fields_set | ({"look"} if "shape" in form.model_fields_set else set())
+    return replace(part, **{key: value for key, value in flags.items() if key in said})
 
 
 def _pattern(form: PatternForm, steps: int) -> Pattern:

@@ -14,7 +14,7 @@ import numpy as np
 
 from foldfab.errors import Problem, RecipeError
 from foldfab.geometry.arrays import Array
-from foldfab.recipe.form import MOST_PAIRS
+from foldfab.recipe.fields import MOST_PAIRS
 from foldfab.recipe.model import Pair, Part
 from foldfab.recipe.names import fits
 from foldfab.recipe.problems import shown

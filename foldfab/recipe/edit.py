@@ -13,7 +13,8 @@ from pydantic import ValidationError
 from foldfab.errors import Problem, RecipeError
 from foldfab.recipe.build import build_print, unit_direction
 from foldfab.recipe.clearance import profile
-from foldfab.recipe.form import Direction, FoldForm, Form, PrintForm
+from foldfab.recipe.fields import Direction
+from foldfab.recipe.form import FoldForm, Form, PrintForm
 from foldfab.recipe.model import USUAL_THICKNESS, Part, Pattern, Printer, PrintOptions, Recipe
 from foldfab.recipe.names import fits, same_name
 from foldfab.recipe.patterns import hinges_problem, rigid_problem, window_problem

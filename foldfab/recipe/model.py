@@ -16,6 +16,7 @@ Collisions = Literal["swept", "regions"]
 Mechanism = Literal["in-place", "slanted", "deleted"]
 Side = Literal["l", "r"]
 Material = Literal["pla", "petg", "abs", "nylon"]
+Look = Literal["plain", "own"]
 Source = Literal["recipe", "command line", "profile", "calibration"]
 Pair = tuple[str, str]
 """The names of two parts, sorted."""
@@ -83,6 +84,8 @@ class Part:
     """K of its plate or panels, mm in print; None where the print's options decide."""
     shape: Mesh | None = None
     """What it looks like, in true mm where it stands; None where it is its box."""
+    look: Look | None = None
+    """Whether it is printed as a plain plate or as it looks; None where the print's options decide."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "center", frozen(self.center, 3))
@@ -161,8 +164,8 @@ class PrintOptions:
     """Why it is this posture, where it was chosen for the maker."""
     hinge: HingeKind = "cone"
     """How the knuckles of a hinge are pinned together."""
-    shape: Literal["plain", "own"] = "plain"
-    """Whether plates are plain, or cut to the outlines of parts that came as meshes or CAD solids."""
+    shape: Look = "plain"
+    """Whether plates are plain, or look like the parts that came as meshes or CAD solids."""
     latch: bool = False
     """Whether base hinges get a detent that holds them open."""
     scale: float | None = None

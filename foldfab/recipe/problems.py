@@ -11,20 +11,8 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from foldfab.errors import Problem
-from foldfab.recipe.form import (
-    MOST_PARTS,
-    MOST_PATTERNS,
-    OWN_WORDS,
-    TAGS,
-    BoxForm,
-    FoldForm,
-    Form,
-    PartForm,
-    PatternForm,
-    PrinterForm,
-    PrintForm,
-    RecipeForm,
-)
+from foldfab.recipe.fields import MOST_PARTS, MOST_PATTERNS, OWN_WORDS, TAGS
+from foldfab.recipe.form import BoxForm, FoldForm, Form, PartForm, PatternForm, PrinterForm, PrintForm, RecipeForm
 from foldfab.recipe.printers import LARGEST, PRINTERS, SMALLEST
 
 Location = tuple[int | str, ...]
@@ -46,6 +34,7 @@ EXPECTED = MappingProxyType(
         "mesh": 'the name of a file of shapes such as "back.obj"',
         "ignore": "true or false",
         "merge": "the name of the part that these bodies become",
+        "by_contact": "true or false",
         "parts[]": 'an object such as {"name": "seat", "box": {"center": [0, 0, 450], "size": [400, 400, 20]}}',
         "box": 'an object such as {"center": [0, 0, 450], "size": [400, 400, 20]}',
         "center": "three numbers",

@@ -10,7 +10,8 @@ from pydantic import ValidationError
 from foldfab.errors import Problem, RecipeError
 from foldfab.recipe.build import Gathered, boxes, build
 from foldfab.recipe.document import load, repeated_keys
-from foldfab.recipe.form import MILLIMETRES, FoldForm, RecipeForm
+from foldfab.recipe.fields import MILLIMETRES
+from foldfab.recipe.form import FoldForm, RecipeForm
 from foldfab.recipe.model import Recipe
 from foldfab.recipe.names import folder_name, folder_name_problem, same_name
 from foldfab.recipe.problems import EXPECTED, TOP, problems_of, shown

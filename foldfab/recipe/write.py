@@ -67,6 +67,8 @@ def _part(part: Part) -> dict[str, Any]:
         written["forbid"] = [_pattern(pattern) for pattern in part.forbid]
     if part.thickness is not None:
         written["thickness"] = part.thickness
+    if part.look is not None:
+        written["shape"] = part.look
     return written
 
 

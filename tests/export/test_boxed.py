@@ -10,9 +10,9 @@ from PIL import Image
 
 from foldfab.export.boxed import folded_png, shells_of
 from foldfab.export.page import CELL, HEAD
-from foldfab.export.shell import is_closed
 from foldfab.folding.kinematics import size_at
 from foldfab.folding.model import FoldSolution
+from foldfab.geometry.closed import is_closed
 
 Make = Callable[..., FoldSolution]
 

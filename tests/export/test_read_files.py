@@ -8,8 +8,9 @@ import pytest
 from foldfab.export.mesh_files import stl_bytes
 from foldfab.export.read_files import read_stl
 from foldfab.export.read_glb import read_glb
-from foldfab.export.shell import is_closed, sheet_shells
+from foldfab.export.shell import sheet_shells
 from foldfab.fabrication.model import Assembly
+from foldfab.geometry.closed import is_closed
 
 
 def test_an_stl_comes_back_as_it_was(assembly: Assembly, tmp_path: Path) -> None:

@@ -5,8 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from foldfab.export.shell import bounds, is_closed, sheet_shells, snapped
+from foldfab.export.shell import bounds, sheet_shells, snapped
 from foldfab.fabrication.model import Assembly, Body
+from foldfab.geometry.closed import is_closed
 
 
 def _body(vertices: Sequence[Sequence[float]], faces: list[list[int]]) -> Body:

@@ -21,8 +21,9 @@ from foldfab.export.read_files import read_stl
 from foldfab.export.report import Row
 from foldfab.export.stated import read_sheet, stated
 from foldfab.export.step import AXES, compound, step_bytes
-from foldfab.fabrication import analytic
+from foldfab.fabrication import analytic, solids
 from foldfab.fabrication.model import Assembly
+from foldfab.fabrication.shapes import box, facets, union
 
 
 @pytest.fixture(scope="module")
@@ -107,6 +108,24 @@ def test_another_body_than_is_printed_is_refused(seat: Assembly) -> None:
     thicker = replace(seat.bodies[0], volume=1.02 * seat.bodies[0].volume)
     with pytest.raises(FabricationError, match=f"{thicker.name} has .* mm³ for CAD and .* in print"):
         compound(replace(seat, bodies=(thicker, *seat.bodies[1:])))
+
+
+def test_on_edge_ramps_and_planed_ends_are_in_it() -> None:
+    standing = foldfab.fabricate(foldfab.foldabilize(foldfab.load("bench-legs", posture="edge")))
+    volumes = {child.label: child.volume for child in compound(standing).children[:-1]}
+    assert volumes == pytest.approx({body.name: body.volume for body in standing.bodies}, rel=1e-3)
+
+
+def test_what_cannot_be_joined_to_a_mesh_is_as_it_is_printed(seat: Assembly) -> None:
+    """A mesh flush with the faces of a hinge is more than the CAD kernel takes; here, one that is in two pieces."""
+    body, cube = seat.bodies[0], solids.box((0, 0, 0), (1, 1, 1))
+    apart = union([facets(*solids.mesh(cube)), box((5, 5, 5), (6, 6, 6))])
+    made = compound(replace(seat, shapes={**seat.shapes, body.name: apart}))
+    (child,) = (c for c in made.children if c.label == body.name)
+    assert child.volume == pytest.approx(body.volume, rel=1e-4)
+    two = union([box((0, 0, 0), (1, 1, 1)), box((5, 5, 5), (6, 6, 6))])
+    with pytest.raises(FabricationError, match=f"{body.name}: .* one; try another scale"):
+        compound(replace(seat, shapes={**seat.shapes, body.name: two}))
 
 
 def test_without_build123d_nothing_is_solved_or_written(

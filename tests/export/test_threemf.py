@@ -12,10 +12,10 @@ from lib3mf import get_wrapper
 
 from foldfab.export.bed import on_bed
 from foldfab.export.read_files import CONFIG, read_threemf
-from foldfab.export.shell import is_closed
 from foldfab.export.slicer_settings import xml_attribute
 from foldfab.export.threemf import threemf_bytes
 from foldfab.fabrication.model import Assembly
+from foldfab.geometry.closed import is_closed
 
 
 @pytest.fixture

@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 
 from foldfab.errors import FabricationError, MissingLibraryError
+from foldfab.fabrication import solids
 from foldfab.fabrication.analytic import analytic, require
 from foldfab.fabrication.panels import panels
 from foldfab.fabrication.plates import plate
 from foldfab.fabrication.printed import printed
-from foldfab.fabrication.shapes import Shape, box, cone, cut, hull, placed, prism, rod, union
+from foldfab.fabrication.shapes import Shape, box, common, cone, cut, facets, hull, placed, prism, rod, union, wrap
 from foldfab.folding.model import Chain, Thickness
 from foldfab.scaffold.model import BasePatch
 
@@ -38,9 +39,27 @@ LIBGL = "libGL.so.1: cannot open shared object file: No such file or directory"
         (union([CUBE, box((5, 0, 0), (15, 10, 10))]), 1500.0, (0, 0, 0), (15, 10, 10)),
         (cut(CUBE, [box((5, -1, -1), (11, 11, 11)), box((-1, -1, 5), (11, 11, 11))]), 250.0, (0, 0, 0), (5, 10, 5)),
         (hull([box((0, 0, 0), (1, 1, 1)), box((9, 0, 0), (10, 1, 1))]), 10.0, (0, 0, 0), (10, 1, 1)),
+        (wrap(np.array([[0, 0, 0], [6, 0, 0], [0, 6, 0], [0, 0, 6]])), 36.0, (0, 0, 0), (6, 6, 6)),
+        (facets(*solids.mesh(solids.box((0, 0, 0), (1, 2, 3)))), 6.0, (0, 0, 0), (1, 2, 3)),
+        (common(CUBE, rod(2.0, 5.0, 19.0, 5.0, 5.0)), 20 * np.pi, (3, 5, 3), (7, 10, 7)),
         (placed(box((0, 0, 0), (1, 2, 3)), AT, np.eye(3)[[1, 2, 0]]), 6.0, (100, 0, 0), (103, 1, 2)),
     ],
-    ids=["box", "rod", "hole", "cone", "cone back", "prism", "prism back", "union", "cut", "hull", "placed"],
+    ids=[
+        "box",
+        "rod",
+        "hole",
+        "cone",
+        "cone back",
+        "prism",
+        "prism back",
+        "union",
+        "cut",
+        "hull",
+        "wrap",
+        "facets",
+        "common",
+        "placed",
+    ],
 )
 def test_each_shape(shape: Shape, volume: float, low: tuple[float, ...], high: tuple[float, ...]) -> None:
     made = analytic(shape)

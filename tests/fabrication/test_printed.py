@@ -8,7 +8,7 @@ import pytest
 from foldfab.errors import FabricationError
 from foldfab.fabrication import solids
 from foldfab.fabrication.printed import printed
-from foldfab.fabrication.shapes import Shape, box, cone, cut, hull, placed, prism, rod, union
+from foldfab.fabrication.shapes import Shape, box, common, cone, cut, facets, hull, placed, prism, rod, union, wrap
 from foldfab.fabrication.solids import Solid
 
 CUBE = box((0, 0, 0), (10, 10, 10))
@@ -25,8 +25,11 @@ TRIANGLE = [(0.0, 0.0), (4.0, 0.0), (0.0, 3.0)]
         (placed(CUBE, np.array([100.0, 0.0, 0.0]), np.eye(3)[[1, 2, 0]]), 1000.0),
         (prism(TRIANGLE, 1.0, 3.0), 12.0),
         (prism(TRIANGLE[::-1], 1.0, 3.0), 12.0),
+        (wrap(np.array([[0, 0, 0], [6, 0, 0], [0, 6, 0], [0, 0, 6]])), 36.0),
+        (facets(*solids.mesh(solids.box((0, 0, 0), (1, 2, 3)))), 6.0),
+        (common(CUBE, box((5, 5, 5), (15, 15, 15))), 125.0),
     ],
-    ids=["box", "union", "cut", "hull", "placed", "prism", "prism the other way round"],
+    ids=["box", "union", "cut", "hull", "placed", "prism", "prism back", "wrap", "facets", "common"],
 )
 def test_volumes(shape: Shape, volume: float) -> None:
     assert printed(shape).volume() == pytest.approx(volume)

@@ -7,7 +7,7 @@ import pytest
 
 from foldfab.geometry.arrays import Array
 from foldfab.intake import contacts as module
-from foldfab.intake.contacts import are_close, contacts, surface, told
+from foldfab.intake.contacts import are_close, contacts, heaps, surface, told
 from foldfab.intake.meshes import joined
 from foldfab.intake.model import Body, Shapes, Wishes
 from foldfab.intake.understand import Grouping, named, parts
@@ -106,3 +106,10 @@ def test_pieces_at_a_time_find_the_same(monkeypatch: pytest.MonkeyPatch) -> None
         assert are_close(leg, rail, 0)
         assert are_close(leg, rail + away, 3)
         assert not are_close(leg, rail + away, 1)
+
+
+def test_heaps_of_what_touches() -> None:
+    row = [box((x, 0, 0), (10, 400, 400)) for x in (0, 5, 300, 10, 305, 900)]
+    assert heaps(row) == [[0, 1, 3], [2, 4], [5]]
+    assert heaps([ANGLE, box((200, 0, 300), (100, 390, 100))]) == [[0], [1]]
+    assert heaps([]) == []

@@ -104,7 +104,7 @@ def recipe(folder: Path, wishes: Wishes = NO_WISHES, **content: Any) -> Recipe:
 def test_a_model_with_flags(folder: Path) -> None:
     flags = [
         {"name": "Side *", "hingeable": False},
-        {"name": "side left", "thickness": 3, "pin": {"mechanism": "slanted"}},
+        {"name": "side left", "thickness": 3, "shape": "own", "pin": {"mechanism": "slanted"}},
         {"name": "Top", "ignore": True},
         {"name": "b*", "merge": "floor"},
         {"name": "lid", "box": {"center": [0, 0, 90], "size": [50, 30, 2]}},
@@ -115,6 +115,7 @@ def test_a_model_with_flags(folder: Path) -> None:
     assert [part.hingeable for part in found.parts] == [False, False, True, True, True]
     assert (parts["Side left"].thickness, parts["Side right"].thickness) == (3.0, None)
     assert parts["Side left"].pin is not None
+    assert [part.look for part in found.parts] == ["own", None, None, None, None]
     assert parts["lid"].size.tolist() == [500, 300, 20]
     assert parts["floor"].size.tolist() == [500, 300, 18]
     assert found.notes == ("ignored as asked: Top",)
@@ -210,3 +211,24 @@ def test_true_contacts_come_with_the_recipe_and_stay_as_they_are_edited(folder: 
     inside = {"center": [200, 0, 300], "size": [100, 390, 100]}
     own = [{"name": "bent", "mesh": "angle.obj"}, {"name": "inside", "box": inside}]
     assert recipe(folder, units="mm", parts=own).apart == (("bent", "inside"),)
+
+
+def test_bodies_merge_by_contact_into_heaps_with_the_flags_of_their_entry(folder: Path) -> None:
+    drawers = {
+        f"Drawer {place} {kind}": box((x, y, 100), size)
+        for place, x in (("left", 0.0), ("right", 500.0))
+        for kind, y, size in (("front", -150.0, (400, 20, 150)), ("bottom", 0.0, (400, 280, 10)))
+    }
+    (folder / "drawers.obj").write_text(obj(drawers | {"Top": box((250, 0, 185), (900, 320, 20))}), encoding="utf-8")
+    entry = {"name": "Drawer*", "merge": "Drawer", "hingeable": False}
+    found = recipe(folder, model="drawers.obj", units="mm", parts=[{**entry, "by_contact": True}])
+    assert [(part.name, part.hingeable) for part in found.parts] == [
+        ("Drawer", False),
+        ("Drawer-2", False),
+        ("Top", True),
+    ]
+    assert found.parts[0].size.tolist() == found.parts[1].size.tolist() == [400, 300, 150]
+    whole = recipe(folder, model="drawers.obj", units="mm", parts=[entry])
+    assert [part.name for part in whole.parts] == ["Drawer", "Top"]
+    with pytest.raises(RecipeError, match='"by_contact" says how bodies merge'):
+        recipe(folder, model="drawers.obj", parts=[{"name": "Drawer*", "by_contact": True}])

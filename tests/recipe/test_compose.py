@@ -13,7 +13,7 @@ from foldfab.folding.solve import solve
 from foldfab.folding.units import Unit, decompose
 from foldfab.geometry.boxes import Boxes, close_pairs
 from foldfab.recipe.compose import KINDS, MOST_CELLS, compose, grid
-from foldfab.recipe.form import MOST_PARTS
+from foldfab.recipe.fields import MOST_PARTS
 from foldfab.recipe.model import Recipe
 from foldfab.recipe.read import read
 from foldfab.recipe.write import as_text

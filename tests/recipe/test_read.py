@@ -155,6 +155,7 @@ BROKEN = [
     (changed("fold", "time_limits", 1), "fold.time_limits", 'did you mean "time_limit"'),
     (changed("fold", "thickness", 4), "fold.thickness", "belongs in print"),
     (changed("print", "thickness", 0.5), "print.thickness", "from 2 to 20"),
+    (changed("print", "shape", "round"), "print.shape", '"plain" or "own"'),
     (changed("print", "clearance", 0.01), "print.clearance", "0.15 to 1"),
     (changed("print", "posture", "sideways"), "print.posture", "folded"),
     (changed("print", "scale", "big"), "print.scale", "fit"),

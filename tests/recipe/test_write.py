@@ -64,6 +64,7 @@ def recipes(draw: st.DrawFn) -> dict[str, Any]:
                 "axes": draw(axes()),
             },
             **draw(modifications(steps, most)),
+            **draw(st.sampled_from([{}, {"shape": "own"}, {"shape": "plain"}])),
         }
         for i in range(draw(st.integers(1, 3)))
     ]

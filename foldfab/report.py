@@ -229,13 +229,13 @@ def _changes(solution: FoldSolution) -> str:
 
 def _figures(assembly: Assembly) -> str:
     opened, folded = sizes(assembly)
-    inserted = sum(joint.is_inserted for joint in assembly.joints)
+    inserted = sum(joint.is_inserted for joint in assembly.hinges)
     scale = assembly.solution.scaffold.scale
     rows = [
         ("open", _size(opened)),
         ("folded", _size(folded)),
         ("space saving", f"{100 * (1 - folded.prod() / opened.prod()):.1f} %"),
-        ("hinges", f"{inserted} inserted, {len(assembly.joints) - inserted} at bases"),
+        ("hinges", f"{inserted} inserted, {len(assembly.hinges) - inserted} at bases"),
         ("printed bodies", str(len(assembly.bodies))),
         ("scale", f"1:{1 / scale:.3g}" if scale <= 1 else f"{scale:.3g}:1"),
         ("cost", cost_and_gap(assembly.solution)),
@@ -265,7 +265,8 @@ def _after(assembly: Assembly) -> list[str]:
     order = "; then ".join(", ".join(step.patches) for step in assembly.solution.steps)
     if assembly.posture == "plate":
         pins = "push 1.75 mm filament through each hinge, cut it 1 mm long and melt its end flat"
-        return ["give supports where the slicer wants them", pins, f"fold in this order: {order}"]
+        seams = ["press the pieces of one part into each other, flat on a table"] if assembly.pieces else []
+        return ["give supports where the slicer wants them", *seams, pins, f"fold in this order: {order}"]
     if assembly.posture == "edge":
         props = [f"break the props off {', '.join(b.name for b in assembly.propped)}"] if assembly.propped else []
         return ["it stands on edge: allow no supports", *props, f"unfold it; fold in this order: {order}"]

@@ -96,7 +96,9 @@ def _root(assembly: Assembly, count: int) -> dict[str, Any]:
 
 
 def _pivot(assembly: Assembly, shell: Shell) -> Array:
-    axes = [joint.axis for joint in assembly.joints if shell.name in joint.parts]
+    # Pieces of a part turn about the same point, or they would move against each other between two keys.
+    mates = next((set(names) for names in assembly.pieces.values() if shell.name in names), {shell.name})
+    axes = [joint.axis for joint in assembly.hinges if mates & set(joint.parts)]
     if axes:
         middle = to_sheet(assembly, np.mean(axes, axis=(0, 1)))
     else:

@@ -27,6 +27,12 @@ FLAT_DEG = 0.5
 """How far from flat a part may lie at the end, and how far a base may turn."""
 SAVING = 0.01
 """By how much the space saving may differ from the stated one."""
+FIT_MM = 0.01
+"""By how much the gap of a seam may be off."""
+PULL_FITS = 4.0
+"""Pieces must meet before they are pulled so many fits apart."""
+STILL_MM = 2e-3
+"""By how much two pieces of a part may seem to move against each other by rounding."""
 AT_REST = 1e-6
 """Two parts whose relative pose changes by less need no second look."""
 
@@ -55,7 +61,8 @@ def check_motion(folder: Path, stated: Stated) -> list[Row]:
         solids[part.name] = solid(part.name, moved(vertices, track[0]), faces)
         poses[part.name] = track @ np.linalg.inv(track[0])
     motion = Motion(solids, poses)
-    checks = (_bodies, _rigid, _collide, _joints, _connected, _flat)
+    checks = [_bodies, _rigid, _collide, _joints, _connected, _flat]
+    checks += [_seams] if any(joint.seam for joint in stated.joints) else []
     return [check(motion, stated) for check in checks]
 
 
@@ -110,9 +117,26 @@ def _joints(motion: Motion, stated: Stated) -> Row:
             problems.append(f"{joint.name} leaves its axis by {drift:.2f} mm")
         if not turn <= joint.range_deg[1] - joint.range_deg[0] + RANGE_DEG:
             problems.append(f"{joint.name} turns {turn:.0f}°, beyond its range")
-    return Row(
-        "joints", not problems, listed(problems) or f"{len(stated.joints)} hinges, on axis within {worst:.3f} mm"
-    )
+    count = sum(joint.seam is None for joint in stated.joints)
+    return Row("joints", not problems, listed(problems) or f"{count} hinges, on axis within {worst:.3f} mm")
+
+
+def _seams(motion: Motion, stated: Stated) -> Row:
+    """Pieces of a part lie a fit apart, never move against each other, and meet when they are pulled apart."""
+    problems, gaps = [], []
+    for joint in stated.joints:
+        if joint.seam is not None:
+            a, b = (motion.solids[name].manifold for name in joint.parts)
+            gaps.append(float(a.min_gap(b, 2 * joint.seam.fit)))
+            if abs(gaps[-1] - joint.seam.fit) > FIT_MM:
+                problems.append(f"{joint.name} has a gap of {gaps[-1]:.3f} mm, the sheet says {joint.seam.fit:g}")
+            if (a ^ b.translate((PULL_FITS * joint.seam.fit * joint.seam.pull).tolist())).volume() <= OVERLAP_MM3:
+                problems.append(f"{joint.name} can be pulled apart")
+            relative = np.linalg.inv(motion.poses[joint.parts[0]]) @ motion.poses[joint.parts[1]]
+            if np.abs(relative - np.eye(4)).max() > STILL_MM:
+                problems.append(f"the pieces at {joint.name} move against each other")
+    text = f"{len(gaps)} seams, {min(gaps):.3f} to {max(gaps):.3f} mm apart, hold"
+    return Row("seams", not problems, listed(problems) or text)
 
 
 def _drift(motion: Motion, joint: StatedJoint) -> float:

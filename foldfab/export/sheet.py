@@ -12,7 +12,7 @@ from foldfab.export.frames import moved, sheet_poses, to_sheet
 from foldfab.export.provenance import provenance
 from foldfab.export.shell import Shell
 from foldfab.export.version import foldfab_version
-from foldfab.fabrication.model import Assembly, Joint, Latch
+from foldfab.fabrication.model import Assembly, Joint, Latch, Seam
 from foldfab.fabrication.snaps import Snap, snaps
 from foldfab.folding.model import Modification
 from foldfab.geometry.arrays import Array
@@ -40,6 +40,7 @@ def facts(assembly: Assembly, shells: tuple[Shell, ...], stl_paths: dict[str, st
         **_solution(assembly),
         "components": component_count([shell.name for shell in shells], assembly.joints),
         "parts": _parts(assembly, shells, stl_paths),
+        **({"pieces": {part: list(names) for part, names in assembly.pieces.items()}} if assembly.pieces else {}),
         "joints": [_joint(assembly, joint) for joint in assembly.joints],
         "snaps": [_snap(snap) for snap in snaps(assembly.solution)],
         "findings": [{"code": finding.code, "text": finding.text} for finding in assembly.findings],
@@ -174,6 +175,7 @@ def _joint(assembly: Assembly, joint: Joint) -> dict[str, Any]:
         "stop_deg": list(joint.stop_deg),
         "stops": list(joint.stops),
         **({} if joint.latch is None else {"latch": _latch(joint.latch)}),
+        **({} if joint.seam is None else {"seam": _seam(assembly, joint.seam)}),
     }
 
 
@@ -183,6 +185,15 @@ def _latch(latch: Latch) -> dict[str, float]:
         "moment_nmm": round(latch.moment, 1),
         "flex_mm": _length(latch.flex),
         "gives_mm3": round(latch.gives, 3),
+    }
+
+
+def _seam(assembly: Assembly, seam: Seam) -> dict[str, Any]:
+    return {
+        "kind": seam.kind,
+        "keys": seam.keys,
+        "fit_mm": _length(seam.fit),
+        "pull": _unit(to_sheet(assembly, np.array(seam.pull))),
     }
 
 

@@ -13,6 +13,9 @@ from foldfab.geometry.arrays import Array, frozen
 MOST_GIVEN = 1.0
 """More than this is no latch but a collision, mm³."""
 
+MOST_FIT = 0.5
+"""More than this between two pieces is no fit, mm."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StatedPart:
@@ -29,8 +32,18 @@ class StatedPart:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class StatedSeam:
+    """What holds two pieces of a part together."""
+
+    fit: float
+    """The gap between them, mm."""
+    pull: Array
+    """(3,) unit vector along which the second cannot be pulled off the first, open posture, sheet frame."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class StatedJoint:
-    """One hinge."""
+    """One hinge, or one seam."""
 
     name: str
     parts: tuple[str, str]
@@ -41,6 +54,7 @@ class StatedJoint:
     range_deg: tuple[float, float]
     gives: float = 0.0
     """What its parts may share while a latch passes, mm³."""
+    seam: StatedSeam | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +175,15 @@ def _joint(row: dict[str, Any], names: set[str]) -> StatedJoint:
     if not 0 <= gives <= MOST_GIVEN:
         raise ValueError(f"the latch of {row['name']} would give {gives:g} mm³")
     axis, radius = frozen(row["axis"], 2, 3), _number(row["radius_mm"])
-    return StatedJoint(_text(row["name"]), (a, b), axis, radius, (_number(low), _number(high)), gives)
+    seam = _seam(row["seam"]) if "seam" in row else None
+    return StatedJoint(_text(row["name"]), (a, b), axis, radius, (_number(low), _number(high)), gives, seam)
+
+
+def _seam(row: dict[str, Any]) -> StatedSeam:
+    fit, pull = _number(row["fit_mm"]), frozen(row["pull"], 3)
+    if not 0 < fit <= MOST_FIT or abs(float(pull @ pull) - 1) > 1e-4:
+        raise ValueError(f"a seam with a fit of {fit:g} mm, or pulled along no unit vector")
+    return StatedSeam(fit, pull)
 
 
 def _term(row: dict[str, Any]) -> StatedTerm:

@@ -50,7 +50,7 @@ def compound(assembly: Assembly) -> build123d.Compound:
     bodies = {body.name: _body(assembly, body, assembly.shapes[body.name], known) for body in assembly.bodies}
     for joint in assembly.joints:
         _join(assembly, joint, bodies)
-    lines = b3d.Compound(label=AXES, children=[_line(assembly, joint) for joint in assembly.joints])
+    lines = b3d.Compound(label=AXES, children=[_line(assembly, joint) for joint in assembly.hinges])
     name = assembly.solution.scaffold.recipe.name
     return b3d.Compound(label=name, children=[*bodies.values(), lines])
 
@@ -106,6 +106,9 @@ def _join(assembly: Assembly, joint: Joint, bodies: dict[str, build123d.Shape]) 
     import build123d as b3d
 
     a, b = (bodies[name] for name in joint.parts)
+    if joint.seam is not None:
+        b3d.RigidJoint(joint.name, b, b3d.RigidJoint(joint.name, a).location)
+        return
     axis = b3d.Axis(to_sheet(assembly, joint.axis[0]).tolist(), _sense(assembly, joint).tolist())
     hinge = b3d.RevoluteJoint(joint.name, a, axis, angular_range=joint.range_deg)
     b3d.RigidJoint(joint.name, b, hinge.location)

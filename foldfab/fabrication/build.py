@@ -10,8 +10,11 @@ import numpy as np
 
 from foldfab.errors import FabricationError
 from foldfab.fabrication import solids
+from foldfab.fabrication.bodies import bodies
+from foldfab.fabrication.bores import blocked, bored
 from foldfab.fabrication.inspect import inspect
-from foldfab.fabrication.model import AS_READ, Assembly, Body, Finding, Joint
+from foldfab.fabrication.joinery import cut_to_bed, with_breaks
+from foldfab.fabrication.model import AS_READ, Assembly, Finding, Joint
 from foldfab.fabrication.own import own_shapes
 from foldfab.fabrication.panels import panels
 from foldfab.fabrication.plates import axis_of, plate
@@ -24,10 +27,10 @@ from foldfab.fabrication.snaps import snap_findings
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.stopping import measured, stopped
 from foldfab.folding.kinematics import configuration, key_times
-from foldfab.folding.mechanism import frames, joints, tilts
+from foldfab.folding.mechanism import joints, tilts
 from foldfab.folding.model import Chain, FoldSolution
-from foldfab.geometry.arrays import Array, Indices
-from foldfab.recipe.hinges import hinge_problem
+from foldfab.geometry.arrays import Array
+from foldfab.recipe.hinges import STYLES, hinge_problem
 from foldfab.recipe.model import Posture
 
 Progress = Callable[[str, float], None]
@@ -35,8 +38,6 @@ Progress = Callable[[str, float], None]
 
 PLANED = 0.5
 """What may be taken off one end of a part for it to stand flush with others on edge, as a share of K."""
-HINGE_SKIN = 0.05
-"""Faces this close to a knuckle's radius are shown as hinge, mm."""
 
 
 def build(solution: FoldSolution, posture: Posture, progress: Progress | None = None) -> Assembly:
@@ -47,6 +48,7 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
     """
     tell = progress or (lambda what, share: None)
     _require_hinges(solution, posture)
+    solution = with_breaks(solution, posture)
     tell("solids", 0.0)
     described, findings = _shapes(solution)
     made = _solids(described)
@@ -65,16 +67,32 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
     held = stopped(draft, made, ramps)
     held, told = own_shapes(draft, held, ramps)
     made, draft = held.made, replace(draft, joints=held.joints, shapes=held.shapes)
-    if up is not None:
-        made = {name: solids.tidied(solids.cut(b, [printed(r) for r in ramps[name]])) for name, b in made.items()}
-        props = propped(made, poses, up, solution.thickness.gap)
-        sloped = {name: cut(shape, ramps[name]) for name, shape in draft.shapes.items()}
-        draft = replace(draft, shapes=sloped, joints=measured(draft, made), propped=_bodies(solution, props))
-    draft = replace(draft, bodies=_bodies(solution, made))
-    findings += [*told, *snap_findings(solution), *_notes(solution)]
+    made, draft, more = _finished(draft, made, ramps)
+    findings += [*told, *more]
+    draft = replace(draft, bodies=bodies(solution, made))
+    findings += [*snap_findings(solution), *_notes(solution)]
     findings += inspect(draft, made, lambda share: tell("inspection", share), held.gives)
     _require_sound(findings)
-    return replace(draft, findings=tuple(findings))
+    draft, more = cut_to_bed(draft, made)
+    _require_sound(more)
+    return replace(draft, findings=(*findings, *more))
+
+
+def _finished(
+    draft: Assembly, made: dict[str, Solid], ramps: dict[str, list[Shape]]
+) -> tuple[dict[str, Solid], Assembly, list[Finding]]:
+    """What is cut once the stops stand: ramps on edge, and bores that are to be open for their pins."""
+    solution = draft.solution
+    if draft.up is not None:
+        made = {name: solids.tidied(solids.cut(b, [printed(r) for r in ramps[name]])) for name, b in made.items()}
+        props = propped(made, draft.poses, draft.up, solution.thickness.gap)
+        sloped = {name: cut(shape, ramps[name]) for name, shape in draft.shapes.items()}
+        draft = replace(draft, shapes=sloped, joints=measured(draft, made), propped=bodies(solution, props))
+    elif STYLES[solution.thickness.hinge].has_loose_pin:
+        made, shapes = bored(solution, made, draft.shapes)
+        draft = replace(draft, shapes=shapes)
+        return made, replace(draft, joints=measured(draft, made)), blocked(draft, made)
+    return made, draft, []
 
 
 def _require_hinges(solution: FoldSolution, posture: Posture) -> None:
@@ -99,10 +117,6 @@ def _notes(solution: FoldSolution) -> list[Finding]:
     posture = [Finding("posture", recipe.print.why)] if recipe.print.why else []
     read = [Finding(AS_READ, note) for note in recipe.notes]
     return [*posture, *read, *(Finding("note", note) for note in solution.notes)]
-
-
-def _bodies(solution: FoldSolution, made: dict[str, Solid]) -> tuple[Body, ...]:
-    return tuple(_body(solution, name, made[name]) for name in sorted(made))
 
 
 def _shapes(solution: FoldSolution) -> tuple[dict[str, Shape], list[Finding]]:
@@ -135,38 +149,12 @@ def _planed(taken: dict[str, float]) -> list[Finding]:
     return [Finding("planed", told)]
 
 
-def _body(solution: FoldSolution, name: str, solid: Solid) -> Body:
-    vertices, faces = solids.mesh(solid)
-    chain = next((c for c in solution.chains if name in c.panels), None)
-    if chain is None:
-        return Body(
-            name, "base", vertices, faces, np.array([0.0, 0.0, 1.0]), float(solid.volume()), np.zeros(0, np.int64)
-        )
-    index = chain.panels.index(name)
-    normal = frames(chain, np.zeros(1))[1][0, index, 0]
-    hinge = _hinge_faces(chain, index, vertices, faces)
-    return Body(name, "panel", vertices, faces, normal, float(solid.volume()), hinge)
-
-
-def _hinge_faces(chain: Chain, index: int, vertices: Array, faces: Indices) -> Indices:
-    """Faces of the knuckles of inserted hinges."""
-    plane = np.stack([chain.across, chain.rise])
-    axes = joints(chain, tilts(chain, np.zeros(1)))[0]
-    center = (vertices[faces].mean(axis=1) - chain.root) @ plane.T
-    inserted = [j for j in (index, index + 1) if 0 < j < len(chain.lengths)]
-    near = np.zeros(len(faces), dtype=bool)
-    for j in inserted:
-        near |= np.linalg.norm(center - axes[j], axis=1) < chain.panel / 2 + HINGE_SKIN
-    return np.nonzero(near)[0]
-
-
 def _joints(solution: FoldSolution) -> list[Joint]:
     found = []
     for chain in solution.chains:
         angles = np.degrees(tilts(chain, np.array([0.0, 1.0])))
         turns = np.concatenate([[[0.0], [0.0]], angles, [[0.0], [0.0]]], axis=1)
-        names = [chain.anchor, *chain.panels, *([chain.far] if chain.far else [])]
-        for j, (a, b) in enumerate(itertools.pairwise(names)):
+        for j, (a, b) in enumerate(itertools.pairwise(chain.bodies)):
             turn = abs(float((turns[1, j + 1] - turns[1, j]) - (turns[0, j + 1] - turns[0, j])))
             axis = _axis(chain, j)
             inserted = 0 < j < len(chain.lengths)

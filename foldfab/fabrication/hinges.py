@@ -10,6 +10,7 @@ Everything is in the local frame of a panel or a foot: y along the axis, x acros
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 from foldfab.fabrication.shapes import Shape, box, rod
 from foldfab.fabrication.walls import LINE
@@ -34,20 +35,39 @@ class Knuckles:
     follower: tuple[Mark, ...]
     pins: tuple[Mark, ...] = ()
     """From the outer face of the first knuckle, where each pin goes in, to that of the last one."""
+    free: tuple[Mark, ...] = ()
+    """Stretches between them that the hinge leaves free."""
 
     @property
     def mirrored(self) -> Knuckles:
         """The same, seen in a frame whose y points the other way."""
-        carrier, follower = (tuple((-b, -a) for a, b in reversed(m)) for m in (self.carrier, self.follower))
-        return Knuckles(carrier, follower, tuple((-a, -b) for a, b in reversed(self.pins)))
+        marks = (self.carrier, self.follower, self.free)
+        carrier, follower, free = (tuple((-b, -a) for a, b in reversed(m)) for m in marks)
+        return Knuckles(carrier, follower, tuple((-a, -b) for a, b in reversed(self.pins)), free)
 
 
-def knuckles(span: Array, thickness: Thickness) -> Knuckles:
+def knuckles(span: Array, thickness: Thickness, breaks: tuple[Mark, ...] = ()) -> Knuckles:
     """An odd number of knuckles over a span (2,), the carrier's at both ends; two such groups where pins are too short.
 
-    A span of the least width gets three; the ends are no narrower than a socket needs.
+    A span of the least width gets three; the ends are no narrower than a socket needs. Beside each of the `breaks`
+    there is a group; where it would be narrower than that, the hinge ends.
     """
-    low, high = float(span[0]), float(span[1])
+    ends = [float(span[0]), *(end for mark in breaks for end in mark), float(span[1])]
+    stretches = [mark for mark in zip(ends[::2], ends[1::2], strict=True) if mark[1] - mark[0] >= thickness.hinge_width]
+    if not breaks or not stretches:
+        return _row(float(span[0]), float(span[1]), thickness)
+    rows = [_row(low, high, thickness) for low, high in stretches]
+    free = tuple((a, b) for (_, a), (b, _) in pairwise([(ends[0], ends[0]), *stretches, (ends[-1], ends[-1])]) if b > a)
+    pins = tuple(pin for row in rows for pin in row.pins)
+    style = STYLES[thickness.hinge]
+    if style.has_loose_pin and style.longest is None:
+        # One pin goes through all groups, as it does through all knuckles.
+        pins = ((pins[0][0], pins[-1][1]),)
+    carrier = tuple(mark for row in rows for mark in row.carrier)
+    return Knuckles(carrier, tuple(mark for row in rows for mark in row.follower), pins, free)
+
+
+def _row(low: float, high: float, thickness: Thickness) -> Knuckles:
     longest = STYLES[thickness.hinge].longest
     if longest is None or high - low <= longest:
         return _group(low, high, thickness)

@@ -17,12 +17,12 @@ from foldfab.fabrication import solids
 from foldfab.fabrication.lying import lying
 from foldfab.fabrication.model import Assembly, Finding
 from foldfab.fabrication.passing import STILL
-from foldfab.fabrication.posture import needs_pins, printed_pose, printed_turn
+from foldfab.fabrication.posture import cuts_parts, needs_pins, printed_pose, printed_turn
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.turning import PAST, meets, stops_at, turn
 from foldfab.folding.kinematics import configuration
 from foldfab.geometry.arrays import Array
-from foldfab.recipe.hinges import STYLES
+from foldfab.recipe.hinges import STYLES, HingeKind, hinge_problem
 
 CLASH = 0.01
 """Shared volume below this is rounding, mm³."""
@@ -53,7 +53,8 @@ def inspect(
     `gives` is what of a panel gives way while it passes a latch: it is not there while the fold is tried.
     """
     findings = _soundness(made)
-    findings += _fits(assembly)
+    # What is cut is looked at again in pieces.
+    findings += [] if cuts_parts(assembly.solution, assembly.posture) else fits(assembly)
     if not any(f.is_fatal for f in findings):
         findings += _gaps(assembly, made)
         folding = {name: solids.cut(solid, gives.get(name, [])) for name, solid in made.items()}
@@ -101,7 +102,8 @@ def _soundness(made: dict[str, Solid]) -> list[Finding]:
     return findings
 
 
-def _fits(assembly: Assembly) -> list[Finding]:
+def fits(assembly: Assembly) -> list[Finding]:
+    """A fatal finding where something is larger than the printer's room."""
     printer = assembly.solution.scaffold.recipe.print.printer
     bed = np.array(printer.build_volume)
     too_large = [(n, s) for n, s in _sizes(assembly) if not ((s <= bed).all() or (s[[1, 0, 2]] <= bed).all())]
@@ -112,9 +114,16 @@ def _fits(assembly: Assembly) -> list[Finding]:
     share = min(float((bed / size).min()), 0.999)
     text = (
         f"{assembly.posture} {name} is {told} mm and does not fit the {printer.name}; "
-        f"print at scale {assembly.solution.scaffold.scale * share:.4g} or smaller"
+        f"print at scale {assembly.solution.scaffold.scale * share:.4g} or smaller{_or_in_parts(assembly)}"
     )
     return [Finding("bed", text, is_fatal=True)]
+
+
+def _or_in_parts(assembly: Assembly) -> str:
+    options = assembly.solution.scaffold.recipe.print
+    hinge: HingeKind = "filament" if options.hinge == "cone" else options.hinge
+    is_able = options.scale is not None and hinge_problem(hinge, options.thickness, "plate") is None
+    return ", or with --posture plate, which cuts parts that are longer than the bed" if is_able else ""
 
 
 def _sizes(assembly: Assembly) -> list[tuple[str, Array]]:

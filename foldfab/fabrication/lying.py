@@ -14,11 +14,20 @@ FLAT = 0.766
 
 def lying(body: Body) -> Array:
     """(n, 3) its vertices as it lies, with the lowest at z = 0, mm."""
-    level = upright(-body.normal)
-    over = level * np.array([[1.0], [-1.0], [-1.0]])
-    ways = [_grounded(body.vertices @ turn.T) for turn in (level, over)]
-    least: Array = min(ways, key=lambda points: round(to_support(points, body), 1))
-    return least
+    return _grounded(body.vertices @ stands(body).T)
+
+
+def stands(body: Body) -> Array:
+    """(3, 3) rows: the bed's x, y and z in the body's frame, as it lies."""
+    level = laid(body)
+    ways: list[Array] = [level, level * np.array([[1.0], [-1.0], [-1.0]])]
+    supports = [round(to_support(_grounded(body.vertices @ turn.T), body), 1) for turn in ways]
+    return ways[int(supports[1] < supports[0])]
+
+
+def laid(body: Body) -> Array:
+    """(3, 3) rows: the bed's x, y and z in the body's frame, where one side of its plate lies on the bed."""
+    return upright(-body.normal)
 
 
 def to_support(points: Array, body: Body) -> float:

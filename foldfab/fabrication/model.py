@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
-from foldfab.fabrication.shapes import Shape
+from foldfab.fabrication.shapes import Point, Shape
 from foldfab.folding.model import FoldSolution
 from foldfab.geometry.arrays import Array, Indices, frozen, frozen_indices
 from foldfab.recipe.model import Posture
@@ -49,9 +49,22 @@ class Latch:
     """What the halves share at most while it passes, as rigid bodies, mm³."""
 
 
+@dataclass(frozen=True, slots=True)
+class Seam:
+    """What holds two pieces of one part together, that was cut because it is longer than the bed."""
+
+    kind: Literal["dovetail", "splice"]
+    keys: int
+    """How many tongues of the one piece lie in sockets of the other."""
+    fit: float
+    """The gap around them, mm."""
+    pull: Point
+    """Unit vector along which the second piece cannot be pulled off the first, open posture, canonical frame."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Joint:
-    """One hinge between two bodies."""
+    """One hinge between two bodies, or the seam between two pieces of a part."""
 
     name: str
     parts: tuple[str, str]
@@ -69,6 +82,8 @@ class Joint:
     """What was added to stop it: `tongue`, `lap`, `heel`, `butt`, `rest`."""
     latch: Latch | None = None
     """What holds it open, where that was asked for."""
+    seam: Seam | None = None
+    """What it is where it does not turn; its axis is then the line that was cut, its radius half the plate."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "axis", frozen(self.axis, 2, 3))
@@ -114,6 +129,13 @@ class Assembly:
 
     propped: tuple[Body, ...] = ()
     """The bodies that are printed with a prop to be broken off, with it; sorted by name."""
+    pieces: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    """By part that was cut because it is longer than the bed, the bodies that it became."""
+
+    @property
+    def hinges(self) -> tuple[Joint, ...]:
+        """The joints that turn."""
+        return tuple(joint for joint in self.joints if joint.seam is None)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "times", frozen(self.times, -1))

@@ -34,17 +34,17 @@ def _panel(chain: Chain, thickness: Thickness, i: int) -> Shape:
     ends += [(last + 1, length)] if i == last and chain.far is not None else []
     for hinge, z in ends:
         solid.append(rod(half, low, high, 0.0, z))
-        marks = knuckles(chain.hinge_spans[hinge], thickness)
-        holes += room(marks.carrier, thickness.foot_room, thickness, 0.0, z, (low, high))
+        marks = knuckles(chain.hinge_spans[hinge], thickness, chain.breaks)
+        holes += room(marks.carrier + marks.free, thickness.foot_room, thickness, 0.0, z, (low, high))
         more, bores = pinned.follower(marks, thickness, 0.0, z)
         extra, sockets = extra + more, sockets + bores
     if i > 0:
-        marks, x = knuckles(chain.hinge_spans[i], thickness), float(chain.offsets[i])
+        marks, x = knuckles(chain.hinge_spans[i], thickness, chain.breaks), float(chain.offsets[i])
         holes += room(marks.carrier, thickness.knuckle_room, thickness, x, 0.0, (low, high))
         more, bores = pinned.follower(marks, thickness, x, 0.0)
         extra, sockets = extra + more + webs(marks.follower, thickness, x, 0.0, 1.0), sockets + bores
     if i < last:
-        marks, x = knuckles(chain.hinge_spans[i + 1], thickness), float(chain.offsets[i + 1])
+        marks, x = knuckles(chain.hinge_spans[i + 1], thickness, chain.breaks), float(chain.offsets[i + 1])
         holes += room(marks.follower, thickness.knuckle_room, thickness, x, length, (low, high))
         more, bores = pinned.carrier(marks, thickness, x, length)
         extra, sockets = extra + more + webs(marks.carrier, thickness, x, length, -1.0), sockets + bores

@@ -73,7 +73,7 @@ def _mount(chain: Chain, base: BasePatch, thickness: Thickness, end: int) -> tup
     frame = np.stack([chain.across, chain.along if end == 0 else -chain.along, rise])
     face, thickness = faces(base, thickness), thickness.of(chain.panel)
     span, hinge = (chain.span, chain.hinge_spans[0]) if end == 0 else (-chain.span[::-1], -chain.hinge_spans[-1][::-1])
-    marks = knuckles(chain.hinge_spans[0 if end == 0 else -1], thickness)
+    marks = knuckles(chain.hinge_spans[0 if end == 0 else -1], thickness, chain.breaks)
     marks = marks if end == 0 else marks.mirrored
     pad, half = chain.pads[end], thickness.panel / 2
     depth = thickness.axis_height + pad + ROOT_SHARE * min(thickness.panel, face.top - face.bottom)

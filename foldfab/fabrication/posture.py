@@ -28,6 +28,11 @@ def needs_pins(posture: Posture) -> bool:
     return posture == "plate"
 
 
+def cuts_parts(solution: FoldSolution, posture: Posture) -> bool:
+    """Whether parts longer than the bed are cut: where each is printed for itself, at a scale that was asked for."""
+    return needs_pins(posture) and solution.scaffold.recipe.print.scale is not None
+
+
 def edge_problem(solution: FoldSolution) -> str | None:
     """Why it cannot stand with all hinge axes vertical, or None."""
     if not solution.chains:

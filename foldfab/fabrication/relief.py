@@ -78,7 +78,7 @@ def _shelves(chain: Chain, thickness: Thickness, up: Array) -> list[tuple[str, _
     across = (-half - CLEAR, half + CLEAR)
     found = []
     for j in range(last + 2 if chain.far is not None else last + 1):
-        marks, is_low = knuckles(chain.hinge_spans[j], thickness), j <= last
+        marks, is_low = knuckles(chain.hinge_spans[j], thickness, chain.breaks), j <= last
         i, away = (j, -1.0) if is_low else (last, 1.0)
         z, x = (0.0 if is_low else float(chain.lengths[last])), float(chain.offsets[j])
         way = 1.0 if float(chain.along @ up) > 0 else -1.0
@@ -105,7 +105,7 @@ def _foot(chain: Chain, thickness: Thickness, j: int, up: Array) -> tuple[str, _
     """The knuckles on their feet, rooted in the plate or on the plinth."""
     end = 0 if j == 0 else 1
     flip = 1.0 if end == 0 else -1.0
-    marks = knuckles(chain.hinge_spans[j], thickness)
+    marks = knuckles(chain.hinge_spans[j], thickness, chain.breaks)
     marks = marks if end == 0 else marks.mirrored
     axes = np.stack([chain.across, flip * chain.along, flip * chain.rise])
     way = 1.0 if float(axes[1] @ up) > 0 else -1.0
@@ -124,6 +124,8 @@ def _ceilings(marks: Knuckles, span: Array, thickness: Thickness, way: float) ->
     """Lower faces of a panel: above each of the carrier's knuckles, with a cone where its own knuckle begins."""
     own = {round(a if way > 0 else b, 6) for a, b in marks.follower}
     tops = [b + thickness.gap if way > 0 else a - thickness.gap for a, b in marks.carrier]
+    # In a stretch that is left free there is nothing above.
+    tops = [t for t in tops if not any(a < t < b for a, b in marks.free)]
     inside = [t for t in tops if (t < span[1] - CLEAR if way > 0 else t > span[0] + CLEAR)]
     return tuple((t, round(t, 6) in own) for t in inside)
 

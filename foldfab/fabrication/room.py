@@ -7,10 +7,11 @@ import numpy as np
 from foldfab.fabrication.posture import bed_turn
 from foldfab.folding.anatomy import base_boxes
 from foldfab.folding.kinematics import size_at
-from foldfab.folding.model import FoldSolution
+from foldfab.folding.model import FoldSolution, Thickness
 from foldfab.geometry.arrays import Array
 from foldfab.geometry.boxes import bounds
 from foldfab.recipe.model import Posture, Recipe
+from foldfab.scaffold.model import BasePatch
 
 PLATE_RIM = 1.0
 """By how much a base's plate may reach beyond its outlines, mm."""
@@ -41,6 +42,12 @@ def largest_scale(recipe: Recipe, posture: Posture, size: Array, bed: Array) -> 
     return 1 / _share(size, bed)
 
 
+def footprint(base: BasePatch, thickness: Thickness) -> tuple[Array, Array]:
+    """Lower and upper corner (2,) of a base's plate, mm."""
+    low, high = bounds(base_boxes(base, thickness))
+    return low.min(axis=0)[:2] - PLATE_RIM, high.max(axis=0)[:2] + PLATE_RIM
+
+
 def _share(size: Array, bed: Array) -> float:
     """Either way round."""
     return float(min((size / bed).max(), (size[[1, 0, 2]] / bed).max()))
@@ -50,8 +57,8 @@ def _footprints(solution: FoldSolution) -> list[Array]:
     """(2,) length and width of each part, flat on the bed, mm."""
     found = []
     for base in solution.scaffold.bases:
-        low, high = bounds(base_boxes(base, solution.thickness))
-        found.append((high.max(axis=0) - low.min(axis=0))[:2] + 2 * PLATE_RIM)
+        low, high = footprint(base, solution.thickness)
+        found.append(high - low)
     for chain in solution.chains:
         width = float(np.ptp(chain.span))
         found += [np.array([float(length) + 2 * chain.panel, width]) for length in chain.lengths]

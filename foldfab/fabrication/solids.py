@@ -123,6 +123,11 @@ def rectangle(middle: Array, sides: Array) -> Outline:
     return CrossSection.square(tuple(sides.tolist()), center=True).translate(tuple(middle.tolist()))
 
 
+def section(body: Solid, height: float) -> Outline:
+    """What a body shows, x and y, where it is cut at a height z."""
+    return body.slice(height)
+
+
 def raised(outline: Outline, low: float, high: float) -> Solid:
     """What stands over an outline of x and y, between two heights."""
     return outline.extrude(high - low).translate((0.0, 0.0, low))
@@ -209,6 +214,15 @@ def without_crumbs(body: Solid) -> Solid:
 def pieces(body: Solid) -> int:
     """How many separate shells it has: specks and voids count, as they do for whoever reads its file."""
     return len(body.decompose())
+
+
+def parts(body: Solid) -> list[Solid]:
+    """The separate bodies that it is, by where they begin: without specks, and hollows stay with theirs."""
+    found = body.decompose()
+    whole = [part for part in found if part.volume() > CRUMB]
+    if any(part.volume() < -CRUMB for part in found):
+        whole = [checked(part ^ body) for part in whole]
+    return sorted(whole, key=lambda part: part.bounding_box())
 
 
 def overlap(a: Solid, b: Solid) -> float:

@@ -139,7 +139,7 @@ def rests(solution: FoldSolution, chain: Chain, hinge: int, up: Array | None = N
     thick = min(mount.thickness.panel, mount.depth + top)
     way = 0.0 if up is None else float(np.sign(mount.frame[1] @ up))
     ramp = abs(way) * STEEP * max(reach - mount.thickness.panel / 2, 0.0)
-    for low, high in _places(mount.span, WIDEST, ramp):
+    for low, high in _places(mount.span, WIDEST, mount.marks.free, ramp):
         tab = _tab(mount.thickness.panel / 2, reach, (low, high), way * ramp)
         flat = placed(prism(tab, -top, thick - top), np.zeros(3), _LYING)
         yield Stop(name, "rest", True, base, placed(flat, mount.origin, mount.frame), panel)
@@ -153,8 +153,8 @@ def _tab(root: float, reach: float, span: Mark, ramp: float) -> list[tuple[float
 
 
 def _names(chain: Chain, hinge: int) -> tuple[str, str, str]:
-    bodies = [chain.anchor, *chain.panels, *([chain.far] if chain.far else [])]
-    return f"{bodies[hinge]}~{bodies[hinge + 1]}", bodies[hinge], bodies[hinge + 1]
+    first, second = chain.bodies[hinge : hinge + 2]
+    return f"{first}~{second}", first, second
 
 
 def _mount(solution: FoldSolution, chain: Chain, hinge: int) -> _Mount:
@@ -166,7 +166,7 @@ def _mount(solution: FoldSolution, chain: Chain, hinge: int) -> _Mount:
     side = float(np.sign(folded - open_)) * (-1.0 if is_far else 1.0)
     frame = np.stack([side * chain.across, np.cross(out, side * chain.across), out])
     way = float(frame[1] @ chain.along)
-    marks = knuckles(chain.hinge_spans[hinge], thickness.of(chain.panel))
+    marks = knuckles(chain.hinge_spans[hinge], thickness.of(chain.panel), chain.breaks)
     marks = marks if way > 0 else marks.mirrored
     low, high = sorted(way * float(end) for end in chain.hinge_spans[hinge])
     face, own = faces(base, thickness), thickness.of(chain.panel)
@@ -216,7 +216,7 @@ def _laps(chain: Chain, hinge: int, thickness: Thickness, name: str) -> Iterator
         recess = _spread(-back * close / 2, back * (half + 1.0), 0.0, z * (reach + gap))
         below, over = chain.panels[hinge - 1], chain.panels[hinge]
         body, other = (over, below) if above else (below, over)
-        for low, high in _places((float(chain.span[0]), float(chain.span[1])), WIDEST):
+        for low, high in _places((float(chain.span[0]), float(chain.span[1])), WIDEST, chain.breaks):
             added, hole = _slab(tongue, low, high), _slab(recess, low - gap, high + gap)
             yield Stop(name, "lap", False, body, placed(added, origin, axes), other, placed(hole, origin, axes))
 
@@ -283,12 +283,16 @@ def _within(marks: tuple[Mark, ...], gap: float) -> Iterator[Mark]:
             yield (low + high - width) / 2, (low + high + width) / 2
 
 
-def _places(span: Mark, widest: float, ramp: float = 0.0) -> Iterator[Mark]:
-    """Places on a span: in its middle, then towards its ends, then narrow ones; each with room for a `ramp`, mm."""
+def _places(span: Mark, widest: float, breaks: tuple[Mark, ...], ramp: float = 0.0) -> Iterator[Mark]:
+    """Places on a span: in its middle, then towards its ends, then narrow ones; each with room for a `ramp`, mm.
+
+    None is in what is to be left free.
+    """
     low, high = span
     for room in (min((high - low) / 2, widest), min((high - low) / 4, widest / 2)):
         width = room + ramp
         if room >= NARROWEST and width <= high - low:
             for share in (0.5, 0.1, 0.9):
                 start = low + share * (high - low - width)
-                yield start, start + width
+                if not any(a < start + width and start < b for a, b in breaks):
+                    yield start, start + width

@@ -276,7 +276,7 @@ def _feet(assembly: Assembly) -> Iterator[tuple[str, tuple[str, ...], Array, Arr
             if base is None:
                 continue
             out, span = chain.rise * (1.0 if end == 0 else -1.0), tuple(map(float, chain.span))
-            marks = knuckles(chain.hinge_spans[-end], own).carrier if chain.pads[end] == 0 else (span,)
+            marks = knuckles(chain.hinge_spans[-end], own, chain.breaks).carrier if chain.pads[end] == 0 else (span,)
             foot = axis_of(chain, end) - out * (own.axis_height + chain.pads[end])
             for low, high in marks:
                 side, top = chain.across * own.panel / 2, out * (chain.pads[end] + own.panel)

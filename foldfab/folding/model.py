@@ -176,6 +176,8 @@ class Chain:
     """Height of the fixed plinths at the anchor and at the far base, mm (the horizontal cropping of section 5.6)."""
     panel: float
     """K of its own panels, mm: more than the print's where the stack is balanced by thickness (figure 19)."""
+    breaks: tuple[tuple[float, float], ...] = ()
+    """Stretches along `along` relative to `root` that its hinges leave free of knuckles, mm, in ascending order."""
     shape: Shape = field(init=False)
     """What its motion depends on."""
     basis: Array = field(init=False)
@@ -202,6 +204,11 @@ class Chain:
         if len(self.lengths) == 1:
             return (self.patch,)
         return tuple(f"{self.patch}/{i + 1}" for i in range(len(self.lengths)))
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """Names of all that its hinges join, in their order: anchor, panels and the far base."""
+        return (self.anchor, *self.panels, *([self.far] if self.far else []))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -160,6 +161,45 @@ def test_the_least_width_keeps_every_style_at_its_minima(kind: HingeKind) -> Non
     assert min(b - a for a, b in marks.carrier) >= style.knuckle - 1e-9
     assert min(b - a for a, b in marks.follower) >= style.pin_knuckle - 1e-9
     assert marks.carrier[-1][1] == pytest.approx(thickness.hinge_width)
+
+
+@pytest.mark.parametrize("kind", ["cone", "clip"])
+def test_a_hinge_that_is_interrupted_works_and_holds(
+    kind: HingeKind, make_chain: Callable[..., Chain], make_base: Callable[..., BasePatch],
+    assert_printable: Callable[[Solid], None],
+) -> None:  # fmt: skip
+    thickness = Thickness(4.0, 0.3, kind)
+    chain = replace(make_chain(thickness, lengths=(20.0, 20.0), width=60.0), breaks=((-6.0, 10.0),))
+    shape, _ = plate(make_base((0, 0, 30, 40)), (chain,), thickness)
+    ground, (lower, upper) = printed(shape), map(printed, panels(chain, thickness))
+    for body in (ground, lower, upper):
+        assert_printable(body)
+    motions = poses(chain)
+    assert_works(ground, lower, motions[0], thickness, in_sheets=False)
+    assert_works(lower, upper, np.linalg.inv(motions[0]) @ motions[1], thickness, in_sheets=True)
+    assert_captive(ground, lower, thickness)
+    assert_captive(lower, upper, thickness)
+    # Above the base, as high as its knuckles, there is nothing.
+    free = solids.box((-2.0, -5.9, 2.1), (2.0, 9.9, 2 * thickness.axis_height + 2.0))
+    assert solids.overlap(ground, free) == 0
+    assert solids.overlap(lower, free) == 0
+
+
+def test_beside_a_break_there_are_whole_hinges_or_none() -> None:
+    thickness, span = Thickness(4.0, 0.3), np.array([0.0, 60.0])
+    marks = knuckles(span, thickness, ((20.0, 35.0),))
+    assert marks.free == ((20.0, 35.0),)
+    assert (marks.carrier[0][0], marks.carrier[-1][1]) == (0.0, pytest.approx(60.0))
+    short = knuckles(span, thickness, ((5.0, 20.0),))
+    assert short.free == ((0.0, 20.0),)
+    assert short.carrier[0][0] == 20.0
+    assert knuckles(span, thickness, ((5.0, 55.0),)) == knuckles(span, thickness)
+    assert marks.mirrored.mirrored == marks
+
+
+def test_one_filament_goes_through_all_of_an_interrupted_hinge() -> None:
+    marks = knuckles(np.array([0.0, 60.0]), Thickness(4.0, 0.3, "filament"), ((20.0, 35.0),))
+    assert marks.pins == ((0.0, pytest.approx(60.0)),)
 
 
 def test_hinges_that_are_not_held_are_noticed(make_chain: Callable[..., Chain]) -> None:

@@ -71,3 +71,9 @@ def test_placed_turns_into_the_rows_of_axes() -> None:
 def test_gap_and_overlap() -> None:
     assert solids.gap(CUBE, CUBE.translate([10.25, 0.0, 0.0]), 1.0) == pytest.approx(0.25)
     assert solids.overlap(CUBE, CUBE.translate([9.0, 0.0, 0.0])) == pytest.approx(100.0)
+
+
+def test_parts_are_told_apart_and_keep_their_hollows() -> None:
+    hollow = solids.cut(solids.box((0, 0, 0), (10, 10, 10)), [solids.box((2, 2, 2), (5, 5, 5))])
+    found = solids.parts(solids.union([solids.box((20, 0, 0), (25, 5, 5)), hollow]))
+    assert [part.volume() for part in found] == pytest.approx([973.0, 125.0])

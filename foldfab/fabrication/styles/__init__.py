@@ -21,15 +21,16 @@ class Style:
 
     carrier: Half
     follower: Half
+    bores: tuple[float, ...] = ()
+    """Radii of the holes for a pin that is put in later, mm: of what it turns in, then of its thread."""
 
 
 def style(kind: HingeKind) -> Style:
     """The style of that kind."""
     made: dict[HingeKind, Style] = {
         "cone": Style(cone.carrier, cone.follower),
-        "filament": Style(filament.carrier, filament.follower),
-        "screw-m2": Style(screw.carrier, screw.follower),
-        "screw-m3": Style(screw.carrier, screw.follower),
+        "filament": Style(filament.carrier, filament.follower, (filament.BORE_RADIUS,)),
+        **{kind: Style(screw.carrier, screw.follower, (s.clearance, s.core)) for kind, s in screw.SCREWS.items()},
         "clip": Style(clip.carrier, clip.follower),
     }
     return made[kind]

@@ -33,7 +33,7 @@ def carrier(hinge: Knuckles, thickness: Thickness, x: float, z: float) -> tuple[
 
 
 def follower(hinge: Knuckles, thickness: Thickness, x: float, z: float) -> tuple[list[Shape], list[Shape]]:
-    """Knuckles with a pin through all of them."""
-    low, high = hinge.carrier[0][0], hinge.carrier[-1][1]
-    pin = rod(PIN_SHARE * thickness.panel, low, high, x, z)
-    return [*(rod(thickness.panel / 2, a, b, x, z) for a, b in hinge.follower), pin], []
+    """Knuckles with a pin through all of a group, which ends a gap before what its panel meets beyond the sockets."""
+    radius, short = PIN_SHARE * thickness.panel, thickness.gap / 2
+    pins = [rod(radius, low + short, high - short, x, z) for low, high in hinge.pins]
+    return [*(rod(thickness.panel / 2, a, b, x, z) for a, b in hinge.follower), *pins], []

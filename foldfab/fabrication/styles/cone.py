@@ -16,10 +16,13 @@ def carrier(hinge: Knuckles, thickness: Thickness, x: float, z: float) -> tuple[
     solid = [rod(thickness.panel / 2, a, b, x, z) for a, b in hinge.carrier]
     holes = []
     size, out = thickness.socket_radius, thickness.panel / 20
-    for i, (a, b) in enumerate(hinge.carrier):
+    near = 2 * thickness.gap
+    for a, b in hinge.carrier:
         # The mouth starts outside its knuckle: coplanar faces would leave a skin without thickness.
-        holes += [cone(size + out, a - out, a + size, x, z, is_hole=True)] if i > 0 else []
-        holes += [cone(size + out, b + out, b - size, x, z, is_hole=True)] if i < len(hinge.carrier) - 1 else []
+        is_after = any(abs(a - end) < near for _, end in hinge.follower)
+        is_before = any(abs(start - b) < near for start, _ in hinge.follower)
+        holes += [cone(size + out, a - out, a + size, x, z, is_hole=True)] if is_after else []
+        holes += [cone(size + out, b + out, b - size, x, z, is_hole=True)] if is_before else []
     return solid, holes
 
 

@@ -7,6 +7,7 @@ of the first knuckle, where both parts leave room for it.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -14,7 +15,7 @@ from foldfab.fabrication.hinges import Knuckles
 from foldfab.fabrication.shapes import Shape
 from foldfab.fabrication.styles.bore import FREE_WAY, OUT, bore, plain
 from foldfab.folding.model import Thickness
-from foldfab.recipe.hinges import STYLES
+from foldfab.recipe.hinges import STYLES, HingeKind
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +29,9 @@ class Screw:
     head: float
 
 
-SCREWS = MappingProxyType({"screw-m2": Screw(1.1, 0.85, 2.0), "screw-m3": Screw(1.6, 1.25, 2.8)})
+SCREWS: Mapping[HingeKind, Screw] = MappingProxyType(
+    {"screw-m2": Screw(1.1, 0.85, 2.0), "screw-m3": Screw(1.6, 1.25, 2.8)}
+)
 """By kind of hinge."""
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from foldfab.fabrication.model import AS_READ, Assembly
 from foldfab.folding.model import FoldSolution, Modification
 from foldfab.geometry.arrays import Array
 from foldfab.postures import Row as PostureRow
+from foldfab.recipe.hinges import HingeKind
 from foldfab.scaffold.directions import title
 from foldfab.validity.model import Verdict
 
@@ -23,6 +25,17 @@ LAYERS = 20
 """A panel is printed in at least that many layers."""
 COLUMNS = ("step", "part", "fold", "hinges", "width kept", "cost", "why")
 ALTERNATIVES = ("rank", "cost", "no less than", "hinges", "narrowed", "order", "otherwise than the first")
+
+_SCREWED = "drive an {} screw into each hinge until its head is home, then turn it back until the hinge moves freely"
+PINNED: Mapping[HingeKind, str] = MappingProxyType(
+    {
+        "filament": "push 1.75 mm filament through each hinge, cut it 1 mm long and melt its end flat",
+        "screw-m2": _SCREWED.format("M2"),
+        "screw-m3": _SCREWED.format("M3"),
+        "clip": "snap the pins of each hinge into their sockets",
+    }
+)
+"""By kind of hinge, how parts that were printed apart are put together; cones never are."""
 
 
 def summary(assembly: Assembly, folder: Path, printable: str = "") -> str:
@@ -264,7 +277,7 @@ def _after(assembly: Assembly) -> list[str]:
     """How to treat the print once it is off the bed."""
     order = "; then ".join(", ".join(step.patches) for step in assembly.solution.steps)
     if assembly.posture == "plate":
-        pins = "push 1.75 mm filament through each hinge, cut it 1 mm long and melt its end flat"
+        pins = PINNED[assembly.solution.thickness.hinge]
         seams = ["press the pieces of one part into each other, flat on a table"] if assembly.pieces else []
         return ["give supports where the slicer wants them", *seams, pins, f"fold in this order: {order}"]
     if assembly.posture == "edge":

@@ -55,10 +55,13 @@ def hinge_problem(kind: HingeKind, thickness: float | None, posture: str | None)
     """Why hinges of a kind cannot be made in plates of a thickness (mm), printed in a posture, and what would do."""
     style = STYLES[kind]
     if thickness is not None and thickness < style.least_thickness:
-        able = [k for k, s in STYLES.items() if s.least_thickness <= thickness and not s.has_loose_pin]
+        # Parts that are printed apart cannot have cones, those that are printed in place no loose pins.
+        fits = {k: s for k, s in STYLES.items() if s.least_thickness <= thickness}
+        able = [k for k, s in fits.items() if (k != "cone" if posture == "plate" else not s.has_loose_pin)]
+        other = f"the hinge {' or '.join(able)}" if able else "another posture"
         return (
             f"{kind} needs plates of at least {style.least_thickness:g} mm, these are {thickness:g} mm; "
-            f"give a thickness of {style.least_thickness:g} or more, or the hinge {' or '.join(able)}"
+            f"give a thickness of {style.least_thickness:g} or more, or {other}"
         )
     if style.has_loose_pin and posture in IN_PLACE_POSTURES:
         return (

@@ -16,10 +16,15 @@ def test_thin_plates_are_refused_with_what_would_do(kind: HingeKind) -> None:
     least = STYLES[kind].least_thickness
     assert hinge_problem(kind, least, "plate") is None
     if kind != "cone":
-        told = hinge_problem(kind, least - 0.1, "plate")
+        told = hinge_problem(kind, least - 0.1, "open")
         assert told is not None
         assert f"at least {least:g} mm" in told
         assert "the hinge cone" in told
+
+
+def test_parts_that_are_printed_apart_are_not_advised_to_have_cones() -> None:
+    assert (hinge_problem("filament", 3.0, "plate") or "").endswith("a thickness of 4 or more, or another posture")
+    assert (hinge_problem("screw-m3", 4.0, "plate") or "").endswith("the hinge filament or screw-m2 or clip")
 
 
 @pytest.mark.parametrize("posture", ["open", "folded", "edge"])

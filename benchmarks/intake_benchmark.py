@@ -73,7 +73,7 @@ def main() -> int:
 def read(path: Path) -> tuple[int | None, float, float, float]:
     """How many parts the file is understood as, seconds of the clock and of the processor, and peak memory, MB."""
     before, start = worked(), time.perf_counter()
-    child = subprocess.run([sys.executable, "-c", READING, str(path)], capture_output=True, text=True)
+    child = subprocess.run([sys.executable, "-c", READING, str(path)], capture_output=True, text=True, encoding="utf-8")
     seconds = time.perf_counter() - start
     found = len(json.loads(child.stdout)["parts"]) if child.returncode == 0 else None
     return found, seconds, worked() - before, max(map(int, child.stderr.split())) * KILOBYTE / 1e6

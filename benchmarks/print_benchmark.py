@@ -68,7 +68,7 @@ def main() -> int:
 def row(file: Path) -> list[object]:
     """The cells of one recipe; a recipe that fails says so in its row."""
     command = [sys.executable, __file__, "--stages", str(file)]
-    child = subprocess.run(command, capture_output=True, text=True)
+    child = subprocess.run(command, capture_output=True, text=True, encoding="utf-8")
     if child.returncode != 0:
         return [file.stem, None, child.stderr.strip().splitlines()[-1]]
     facts = json.loads(child.stdout)

@@ -68,7 +68,7 @@ def test_an_outspoken_module_is_noticed(line: str) -> None:
 
 def test_importing_foldfab_is_light() -> None:
     code = f"import sys, foldfab, foldfab.cli; print([name for name in {HEAVY!r} if name in sys.modules])"
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, encoding="utf-8", check=True)
     assert run.stdout.strip() == "[]"
 
 

@@ -331,12 +331,14 @@ def test_progress_only_on_a_terminal(
 def test_help_is_fast_and_a_closed_pipe_is_quiet() -> None:
     # Processor time, not wall time: other tests run beside this one.
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    run = subprocess.run([sys.executable, "-m", "foldfab.cli", "--help"], capture_output=True, text=True, check=True)
+    run = subprocess.run(
+        [sys.executable, "-m", "foldfab.cli", "--help"], capture_output=True, text=True, encoding="utf-8", check=True
+    )
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime < 0.5
     assert "print" in run.stdout
     closed = f"{sys.executable} -m foldfab.cli print --help | true"
-    piped = subprocess.run(closed, shell=True, capture_output=True, text=True, check=True)
+    piped = subprocess.run(closed, shell=True, capture_output=True, text=True, encoding="utf-8", check=True)
     assert piped.stderr == ""
 
 
@@ -370,7 +372,7 @@ from foldfab.cli import main
 main(["recipe", "bench"])
 print([name for name in {heavy} if name in sys.modules])
 """
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, encoding="utf-8", check=True)
     assert run.stdout.splitlines()[-1] == "[]"
 
 

@@ -26,5 +26,7 @@ LAYERS = "import sys; from importlinter.cli import lint_imports_command; sys.exi
 def test_the_gate(module: str, command: list[str]) -> None:
     if find_spec(module) is None:
         pytest.skip(f"{module} is not installed; pip install -e '.[test]'")
-    run = subprocess.run([sys.executable, *command], cwd=ROOT, capture_output=True, text=True, check=False)
+    run = subprocess.run(
+        [sys.executable, *command], cwd=ROOT, capture_output=True, text=True, encoding="utf-8", check=False
+    )
     assert run.returncode == 0, run.stdout + run.stderr

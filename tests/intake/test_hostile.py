@@ -76,7 +76,7 @@ def outcome(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     before = {str(path): path.lstat().st_mtime_ns for path in top.rglob("*")}
     bait = [str(folder.parent / name) for name in BAIT]
     command = [sys.executable, "-c", WATCHED, str(folder), str(good), json.dumps(list(expected)), *bait]
-    run = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
+    run = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", check=False, timeout=300)
     assert run.returncode == 0, run.stderr
     after = {str(path): path.lstat().st_mtime_ns for path in top.rglob("*")}
     return json.loads(run.stdout) | {"expected": expected, "is_same": before == after}

@@ -70,7 +70,9 @@ def peak(file: Path) -> int:
     """Of a process that reads the file, bytes."""
     if not STATUS.exists():
         pytest.skip("the system does not tell how much memory a process takes")
-    run = subprocess.run([sys.executable, "-c", READING, str(file)], capture_output=True, text=True, check=True)
+    run = subprocess.run(
+        [sys.executable, "-c", READING, str(file)], capture_output=True, text=True, encoding="utf-8", check=True
+    )
     return 1024 * int(run.stdout)
 
 
@@ -87,6 +89,8 @@ def test_the_reader_of_step_files_gets_no_more(tmp_path: Path) -> None:
     pytest.importorskip("resource", reason="the system does not limit processes")
     code = "from foldfab.intake.step_process import _limit; _limit(); bytearray({})"
     for size, fits in ((LARGEST_DATA // 2, True), (LARGEST_DATA, False)):
-        run = subprocess.run([sys.executable, "-c", code.format(size)], capture_output=True, text=True, check=False)
+        run = subprocess.run(
+            [sys.executable, "-c", code.format(size)], capture_output=True, text=True, encoding="utf-8", check=False
+        )
         assert (run.returncode == 0) == fits
         assert fits or "MemoryError" in run.stderr

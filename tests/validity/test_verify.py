@@ -38,7 +38,7 @@ def test_small_furniture_is_valid(name: str, solution: Solutions) -> None:
 
 def test_it_shares_nothing_with_the_search() -> None:
     code = "import sys, foldfab.validity.verify; print(*(m for m in sys.modules if m.startswith('foldfab.folding.')))"
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, encoding="utf-8", check=True)
     assert set(run.stdout.split()) == {"foldfab.folding.model", "foldfab.folding.mechanism"}
 
 

@@ -26,6 +26,8 @@ EPSILON = 1e-12
 """A choice must be cheaper by more than this to be better."""
 LIMIT = 1_500
 """Branches after which CP-SAT takes over."""
+SHORT = 100
+"""The same where it had to before: as many as give it a choice to start from."""
 FEW = 8
 """Groups beyond which elimination is tried first."""
 WIDEST = 100
@@ -43,6 +45,7 @@ def cheapest(
     conflicts: Mapping[tuple[int, int], Bools],
     forbidden: frozenset[Combination] = frozenset(),
     gaps: list[float] | None = None,
+    tangled: set[tuple[int, ...]] | None = None,
 ) -> tuple[int, ...] | None:
     """The option of each group in the cheapest conflict-free choice, or None where there is none.
 
@@ -51,6 +54,7 @@ def cheapest(
         conflicts: by groups (g, h) with g < h, which options (n_g, n_h) exclude each other; a missing pair has none.
         forbidden: combinations of (group, option) that must not all be taken together.
         gaps: gets by how much the choice may be dearer than the cheapest one, where the work did not suffice to tell.
+        tangled: gets the groups that plain branch and bound gave up on, and says on which it need not be tried again.
     """
     if not conflicts and not forbidden:
         return tuple(int(np.argmin(c)) for c in costs) if all(np.isfinite(c.min()) for c in costs) else None
@@ -63,7 +67,9 @@ def cheapest(
             price = np.where(alive[groups[0]], costs[groups[0]], np.inf)
             best: dict[int, int] | None = {groups[0]: int(np.argmin(price))} if np.isfinite(price).any() else None
         else:
-            best, gap = _solved({g: alive[g] for g in groups}, costs, table, forbidden)
+            best, gap = _solved(
+                {g: alive[g] for g in groups}, costs, table, forbidden, tangled if tangled is not None else set()
+            )
             if gaps is not None and gap > 0:
                 gaps.append(gap)
         if best is None:
@@ -132,26 +138,28 @@ def _islands(alive: list[Bools], table: Table, forbidden: frozenset[Combination]
 
 
 def _solved(
-    alive: Mapping[int, Bools], costs: list[Array], table: Table, forbidden: frozenset[Combination]
-) -> tuple[dict[int, int] | None, float]:
+    alive: Mapping[int, Bools], costs: list[Array], table: Table, forbidden: frozenset[Combination],
+    tangled: set[tuple[int, ...]],
+) -> tuple[dict[int, int] | None, float]:  # fmt: skip
     groups = set(alive)
     own = [c for c in forbidden if {g for g, _ in c} <= groups]
     if len(groups) > FEW and not own:
         found = eliminated(alive, costs, table)
         if found is not None:
             return found, 0.0
-    search = _Search(costs, table, own)
+    search = _Search(costs, table, own, SHORT if tuple(alive) in tangled else LIMIT)
     if len(groups) <= WIDEST:
         search.branch(dict(alive), {}, 0.0)
         if search.left >= 0:
             return search.best, 0.0
+        tangled.add(tuple(alive))
     return proven(alive, costs, table, sorted(own), search.best)
 
 
 class _Search:
     """State of one branch and bound."""
 
-    def __init__(self, costs: list[Array], table: Table, forbidden: list[Combination]) -> None:
+    def __init__(self, costs: list[Array], table: Table, forbidden: list[Combination], limit: int) -> None:
         self.costs = costs
         self.table = table
         self.forbidden: dict[tuple[int, int], list[Combination]] = {}
@@ -159,7 +167,7 @@ class _Search:
         for combination in sorted(forbidden):
             for place in combination:
                 self.forbidden.setdefault(place, []).append(combination)
-        self.left = LIMIT
+        self.left = limit
         self.best: dict[int, int] | None = None
         self.bound = np.inf
 

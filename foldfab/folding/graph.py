@@ -48,6 +48,7 @@ class Graph:
         self._treat_alike(problem, chosen or {})
         self.forbidden: set[Combination] = set()
         self.gaps: list[float] = []
+        self.tangled: set[tuple[int, ...]] = set()
         self.learned: list[Lesson] = []
         for clash, places in learned:
             self.learn(tuple(o.index(place) for o, place in zip(self.options, places, strict=True)), clash)
@@ -79,12 +80,12 @@ class Graph:
         """The cheapest choice, one option a patch."""
         self.gaps.clear()
         if not self.modes:
-            return cheapest(self.costs, self.tables, frozenset(self.forbidden), self.gaps)
+            return cheapest(self.costs, self.tables, frozenset(self.forbidden), self.gaps, self.tangled)
         best: tuple[int, ...] | None = None
         for masks in self.modes:
             costs = [np.where(mask, cost, np.inf) for mask, cost in zip(masks, self.costs, strict=True)]
             if best is None or sum(float(cost.min()) for cost in costs) < self.weight(best):
-                picked = cheapest(costs, self.tables, frozenset(self.forbidden), self.gaps)
+                picked = cheapest(costs, self.tables, frozenset(self.forbidden), self.gaps, self.tangled)
                 if picked is not None and (best is None or self.weight(picked) < self.weight(best)):
                     best = picked
         return best

@@ -12,17 +12,18 @@ _NAMELESS = re.compile(r"(solid|compound|shell|shape|=>\[[\d:]*\])?", re.IGNOREC
 """What programs write where a body has no name."""
 NAMELESS = "part"
 
+NUMBER = 6
+"""Room for what tells names apart, characters."""
+
 
 def part_name(text: str) -> str:
     """A name that a part can have and that resembles `text`."""
     shown = "".join("-" if has_control_characters(letter) else letter for letter in unicodedata.normalize("NFC", text))
-    name = _FORBIDDEN.sub("-", shown).strip().strip(".").strip()[:LONGEST]
-    while len(name.encode()) > 2 * LONGEST:
-        name = name[:-1]
-    name = name.strip().strip(".").strip()
+    name = _FORBIDDEN.sub("-", shown).strip().strip(".").strip()
+    name = _shortened(name, 0).strip().strip(".").strip()
     if name.strip("-") == "":
         return NAMELESS
-    return name if part_name_problem(name) is None else f"{name[: LONGEST - 2]}-1"
+    return name if part_name_problem(name) is None else f"{_shortened(name, 2)}-1"
 
 
 def is_nameless(text: str) -> bool:
@@ -42,7 +43,7 @@ def unique(names: list[str]) -> list[str]:
             number = numbers.get(key, 1)
             while True:
                 number += 1
-                fresh = f"{name[: LONGEST - 6]}-{number}"
+                fresh = f"{_shortened(name, NUMBER)}-{number}"
                 if same_name(fresh) not in taken:
                     break
             numbers[key] = number
@@ -51,3 +52,11 @@ def unique(names: list[str]) -> list[str]:
         used.add(same_name(name))
         found.append(name)
     return found
+
+
+def _shortened(name: str, room: int) -> str:
+    """The beginning of a name that leaves so much room in characters, and in bytes, for what is put behind it."""
+    name = name[: LONGEST - room]
+    while len(name.encode()) > 2 * LONGEST - room:
+        name = name[:-1]
+    return name

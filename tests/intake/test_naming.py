@@ -43,3 +43,9 @@ def test_numbers_where_names_repeat() -> None:
 def test_no_names(text: str) -> None:
     assert is_nameless(text)
     assert not is_nameless(f"{text} leg")
+
+
+def test_a_number_leaves_long_names_short_enough_in_bytes() -> None:
+    """66 letters of three bytes each: as long as a name may be, without a number."""
+    found = unique(["ࠀ" * 66] * 12)
+    assert [part_name_problem(name) for name in found] == [None] * 12 and len(set(found)) == 12

@@ -13,6 +13,7 @@ import numpy as np
 
 from foldfab.geometry.arrays import Array, Bools
 from foldfab.geometry.boxes import Boxes, close_pairs, grown, near_pairs
+from foldfab.geometry.groups import Groups
 from foldfab.geometry.triangles import between, is_inside
 from foldfab.intake.notes import note
 from foldfab.recipe.contacts import BY_BOXES, Contacts, pair, reach
@@ -49,11 +50,11 @@ def heaps(meshes: list[Mesh]) -> list[list[int]]:
     i, j = near_pairs((low - within / 2, high + within / 2), (low - within / 2, high + within / 2))
     near = [(a, b) for a, b in zip(i.tolist(), j.tolist(), strict=True) if a < b]
     surfaces = [mesh.vertices[mesh.faces] for mesh in meshes]
-    heap = list(range(len(meshes)))
+    heap = Groups(len(meshes))
     for a, b in near:
-        if heap[a] != heap[b] and are_close(surfaces[a], surfaces[b], within):
-            heap = [heap[a] if other == heap[b] else other for other in heap]
-    return [[k for k, other in enumerate(heap) if other == first] for first in dict.fromkeys(heap)]
+        if heap.of(a) != heap.of(b) and are_close(surfaces[a], surfaces[b], within):
+            heap.join(a, b)
+    return heap.all()
 
 
 def told(found: Contacts) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ from foldfab.intake.contacts import contacts, told
 from foldfab.intake.files import shapes
 from foldfab.intake.inside import inside
 from foldfab.intake.limits import fail
+from foldfab.intake.loose import loose
 from foldfab.intake.meshes import joined
 from foldfab.intake.model import Body, Shapes, Wishes
 from foldfab.intake.naming import part_name
@@ -148,14 +149,16 @@ def _recipe(name: str, source: str, held: Shapes, wishes: Wishes) -> Recipe:
     check_patterns(wishes.ignore, [body.name for body in bodies])
     found = parts(source, bodies, wishes, Grouping(ignored=wishes.ignore))
     met = contacts(found.parts, found.hardware)
+    lost = loose(found.parts, met)
+    stated = met.among({part.name for part in found.parts} - lost.names)
     return Recipe(
         name=name if folder_name_problem(name) is None else folder_name(name),
         direction=None,
-        parts=found.parts,
+        parts=tuple(part for part in found.parts if part.name not in lost.names),
         fold=FoldOptions(),
         print=PrintOptions(printer=DEFAULT_PRINTER),
         source=source,
-        notes=(*notes, *found.notes, *told(met)),
-        touching=tuple(sorted(met.touching)),
-        apart=tuple(sorted(met.apart)),
+        notes=(*notes, *found.notes, *told(stated), *lost.notes),
+        touching=tuple(sorted(stated.touching)),
+        apart=tuple(sorted(stated.apart)),
     )

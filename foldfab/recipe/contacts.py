@@ -35,6 +35,11 @@ class Contacts:
     apart: frozenset[Pair] = frozenset()
     """They do not, though their boxes do."""
 
+    def among(self, names: set[str]) -> Contacts:
+        """The pairs of parts of these names."""
+        some, others = ({both for both in pairs if names.issuperset(both)} for pairs in (self.touching, self.apart))
+        return Contacts(frozenset(some), frozenset(others))
+
 
 BY_BOXES = Contacts()
 """Boxes tell all that there is to tell."""

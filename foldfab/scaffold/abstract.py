@@ -12,7 +12,7 @@ from foldfab.recipe.model import Recipe
 from foldfab.scaffold import segments as seg
 from foldfab.scaffold.bases import Layout, find_bases
 from foldfab.scaffold.contacts import Contacts, contacts_of, listed, require_connected
-from foldfab.scaffold.groups import Groups
+from foldfab.geometry.groups import Groups
 from foldfab.scaffold.model import BasePatch, Patch, Scaffold
 from foldfab.scaffold.segments import Segment
 from foldfab.scaffold.sheets import sheets

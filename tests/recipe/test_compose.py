@@ -18,7 +18,7 @@ from foldfab.recipe.model import Recipe
 from foldfab.recipe.read import read
 from foldfab.recipe.write import as_text
 from foldfab.scaffold.abstract import abstract
-from foldfab.scaffold.groups import Groups
+from foldfab.geometry.groups import Groups
 from foldfab.scaffold.model import Scaffold
 
 TABLE_1 = {

@@ -7,12 +7,12 @@ from dataclasses import replace
 
 from foldfab.errors import AbstractionError
 from foldfab.geometry.arrays import Array
-from foldfab.geometry.rotation import upright
+from foldfab.geometry.groups import Groups
 from foldfab.recipe.model import Recipe
 from foldfab.scaffold import segments as seg
 from foldfab.scaffold.bases import Layout, find_bases
 from foldfab.scaffold.contacts import Contacts, contacts_of, listed, require_connected
-from foldfab.geometry.groups import Groups
+from foldfab.scaffold.frame import canonical
 from foldfab.scaffold.model import BasePatch, Patch, Scaffold
 from foldfab.scaffold.segments import Segment
 from foldfab.scaffold.sheets import sheets
@@ -62,7 +62,7 @@ def abstract(recipe: Recipe, direction: Array, scale: float) -> Scaffold:
     notes = (*told, *notes, *_tilted(parts, thickness))
     bases = tuple(replace(b, thickness=_thickest(recipe, b.parts, scale, is_base=True)) for b in layout.bases)
     patches = tuple(replace(p, thickness=_thickest(recipe, p.parts, scale, is_base=False)) for p in patches)
-    return Scaffold(recipe, direction, upright(direction), scale, bases, patches, notes)
+    return Scaffold(recipe, direction, canonical(recipe, direction), scale, bases, patches, notes)
 
 
 def check_connected(recipe: Recipe) -> None:

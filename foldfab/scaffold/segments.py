@@ -12,8 +12,9 @@ import numpy as np
 
 from foldfab.geometry.arrays import Array, Bools
 from foldfab.geometry.boxes import Boxes
-from foldfab.geometry.rotation import cross, upright
+from foldfab.geometry.rotation import cross
 from foldfab.recipe.model import Recipe
+from foldfab.scaffold.frame import canonical
 
 ROD_RATIO = 3.0
 """A part is a rod where its longest side is this many times the middle one, and the middle one not a sheet's."""
@@ -56,9 +57,9 @@ class Segment:
 
 
 def segments(recipe: Recipe, direction: Array, scale: float) -> tuple[Segment, ...]:
-    """All parts of the recipe, turned so that d = -Z and scaled to print millimetres, sorted by name."""
+    """All parts of the recipe in the canonical frame, scaled to print millimetres, sorted by name."""
     parts = sorted(recipe.parts, key=lambda part: part.name)
-    turn = upright(direction)
+    turn = canonical(recipe, direction)
     axes = _settled(np.array([part.axes for part in parts]) @ turn.T)
     half = _on_grid(scale * np.array([part.size for part in parts]) / 2)
     center = _on_grid(((scale * turn) @ np.array([part.center for part in parts])[:, :, None])[:, :, 0])
@@ -153,7 +154,8 @@ def _spanned(segment: Segment, axis: Array, normal: Array) -> tuple[Array, Array
 
 
 def _level(direction: Array) -> Array:
-    """(3,) the horizontal unit vector across a direction that is not upright."""
+    """(3,) the horizontal unit vector across a direction that is not upright, towards +x where it may, else +y."""
     across = cross(VERTICAL, direction)
     unit: Array = across / np.linalg.norm(across)
-    return unit
+    lead = unit[0] if abs(unit[0]) > ALL_BUT_ZERO else unit[1]
+    return unit if lead > 0 else -unit

@@ -1,0 +1,80 @@
+"""The canonical frame: d = -Z, and x and y along the furniture's own axes, however it stands in its file.
+
+So a copy that is turned, moved or of another size is the same furniture in it, and of solutions that cost the same the
+same one is found. Axes are those that the parts' sides face, by area. Which of them is x, and which way, is settled by
+the furniture's length and then part by part, in the order of their names, by what tells the quarter turns apart.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from foldfab.geometry.arrays import Array
+from foldfab.geometry.rotation import upright
+from foldfab.recipe.model import Recipe
+
+LEVEL = np.sin(np.radians(2.0))
+"""A side whose normal rises by less than this sine faces sideways."""
+ONE_LINE = np.radians(0.5)
+"""Sides whose normals are closer than this face along one line."""
+SAME = 1e-3
+"""Lengths that differ by less than this share of the furniture's size tell nothing apart, nor do such angles."""
+_TURNS = np.array([[[1, 0], [0, 1]], [[-1, 0], [0, -1]], [[0, 1], [-1, 0]], [[0, -1], [1, 0]]], dtype=np.float64)
+"""Quarter turns of x and y, the identity first."""
+
+
+def canonical(recipe: Recipe, direction: Array) -> Array:
+    """The rotation (3, 3) from the recipe's frame into the canonical one, for a unit `direction` (3,).
+
+    Exact quarter turns where direction and furniture are along the axes.
+    """
+    parts = sorted(recipe.parts, key=lambda part: part.name)
+    turn = upright(direction)
+    axes = np.array([part.axes for part in parts]) @ turn.T
+    size = np.array([part.size for part in parts])
+    yaw = _along(axes, size)
+    axes = axes[:, :, :2] @ yaw.T
+    center = np.array([part.center for part in parts]) @ turn.T[:, :2] @ yaw.T
+    reach = (np.abs(axes) * size[:, :, None] / 2).sum(1)
+    return np.vstack([_quarter(center, reach) @ yaw @ turn[:2], turn[2:]])
+
+
+def _along(axes: Array, size: Array) -> Array:
+    """(2, 2) rows: the horizontal line that most area of level sides faces, with that across it, and the one across."""
+    level = np.abs(axes[:, :, 2]) < LEVEL
+    if not level.any():
+        return np.eye(2)
+    area = (size.prod(1)[:, None] / size)[level]
+    # Four times the angle is the same for both lines of a cross, either way along each.
+    angle = 4 * np.arctan2(axes[level][:, 1], axes[level][:, 0])
+    apart = np.abs(np.angle(np.exp(1j * (angle[:, None] - angle))))
+    votes = (apart < 4 * ONE_LINE) @ area
+    first = int(np.argmax(votes > votes.max() * (1 - SAME)))
+    x, y = axes[level][first][:2]
+    if min(abs(x), abs(y)) < SAME:
+        return np.eye(2)
+    x, y = np.array([x, y]) / np.hypot(x, y)
+    return np.array([[x, y], [-y, x]])
+
+
+def _quarter(center: Array, reach: Array) -> Array:
+    """(2, 2) the quarter turn by which the furniture is as long as can be along x, and part by part furthest back.
+
+    Args:
+        center: (n, 2) middles of the parts in the order of their names.
+        reach: (n, 2) how far they go from there.
+    """
+    low, high = (center - reach).min(0), (center + reach).max(0)
+    size = high - low
+    place = (center - (low + high) / 2) @ _TURNS.transpose(0, 2, 1)
+    long = reach @ np.abs(_TURNS).transpose(0, 2, 1)
+    # (4, 1 + 4 n): the whole, then each part.
+    told = np.concatenate([place[:, :, 1:], -place[:, :, :1], long], axis=2).reshape(4, -1)
+    features = np.concatenate([(np.abs(_TURNS) @ size)[:, :1], told], axis=1) / size.max()
+    left = np.arange(4)
+    for column in features.T:
+        left = left[column[left] > column[left].max() - SAME]
+        if len(left) == 1:
+            break
+    chosen: Array = _TURNS[left[0]]
+    return chosen

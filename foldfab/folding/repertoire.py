@@ -33,6 +33,8 @@ TOUCH = 1e-3
 """Parts exactly the gap apart do not meet: the grid that sizes stand on, mm."""
 TALL = 1e6
 """Half the height of a folding region, mm: what lies above or below it counts."""
+_AWKWARD_DIGITS = 4
+"""Of awkwardness: what differs by the grid of places alone is equally awkward."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -170,7 +172,7 @@ def awkwardness(problem: Problem, many: tuple[Lane, ...], offset: Array) -> Arra
     out = np.maximum(least - low - offset, 0) + np.maximum(high + offset - most, 0)
     pads = np.array([sum(x.variant.pads) for x in many])
     found: Array = (out.sum(1) + 2 * pads) / float(np.linalg.norm(most - least))
-    return found
+    return np.round(found, _AWKWARD_DIGITS)
 
 
 def _at_home(chain: Chain) -> tuple[Array, Array | None]:

@@ -22,6 +22,8 @@ PLATE_TILT = np.radians(26.0)
 """A plate this close to perpendicular to d still counts as perpendicular (slightly tilted seats)."""
 ROD_TILT = np.radians(8.0)
 """The same for a rod's axis."""
+SQUARE = 1e-3
+"""A rod whose sides differ by less than this share is square: its sheet faces along y, and no noise of a file decides."""
 FILLING = 1.6
 """A board whose bounding rectangle is this many times its own face leans within its plane."""
 ALL_BUT_ZERO = 1e-4
@@ -85,6 +87,8 @@ def sheet(segment: Segment) -> tuple[Array, Array, float, float, float]:
     """
     thin, middle, long = np.argsort(segment.half, kind="stable")
     if is_rod(segment.half):
+        if segment.half[middle] < (1 + SQUARE) * segment.half[thin]:
+            thin = max(thin, middle, key=lambda side: abs(segment.axes[side, 1]))
         return _spanned(segment, segment.axes[long], segment.axes[thin])
     found = _spanned(segment, cross(segment.axes[thin], _level(segment.axes[thin])), segment.axes[thin])
     if found[2] * found[3] > FILLING * 4 * segment.half[middle] * segment.half[long]:

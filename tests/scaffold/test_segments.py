@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from foldfab.geometry.arrays import Array
 from foldfab.recipe.model import Part, Recipe
+from foldfab.scaffold.frame import canonical
 from foldfab.scaffold.segments import Segment, segments, sheet
 
 DOWN = (0.0, 0.0, -1.0)
@@ -66,7 +67,8 @@ def test_the_plane_of_a_rod_depends_on_the_direction_and_not_on_its_thinner_side
 ) -> None:
     rod = box("rod", (0, 0, 0), size, DIAGONAL)
     downward = sheet(segment(recipe, rod))
-    assert np.abs(downward[0]) == pytest.approx(np.abs(DIAGONAL[0]))
+    along = downward[0] @ canonical(recipe((rod,)), np.array(DOWN))
+    assert np.abs(along) == pytest.approx(np.abs(DIAGONAL[0]))
     assert downward[2] == pytest.approx(size[0])
     along_x = segments(recipe((rod,)), np.array([-1.0, 0, 0]), 1.0)[0]
     assert sheet(along_x)[0][2] == 0.0

@@ -202,9 +202,9 @@ def _triangles(solid: Any) -> tuple[Array, Indices]:
     from OCP.TopoDS import TopoDS
 
     BRepMesh_IncrementalMesh(solid, COARSEST, False, TURN, False)
-    points: list[tuple[float, float, float]] = []
-    faces: list[tuple[int, ...]] = []
-    explorer = TopExp_Explorer(solid, TopAbs_FACE)
+    points: list[Array] = [np.empty((0, 3))]
+    faces: list[Indices] = [np.empty((0, 3), dtype=np.int64)]
+    explorer, start = TopExp_Explorer(solid, TopAbs_FACE), 0
     while explorer.More():
         place = TopLoc_Location()
         face = explorer.Current()
@@ -212,10 +212,11 @@ def _triangles(solid: Any) -> tuple[Array, Indices]:
         explorer.Next()
         if mesh is None:
             continue
-        turn, start = place.Transformation(), len(points) - 1
-        nodes = (mesh.Node(index).Transformed(turn) for index in range(1, mesh.NbNodes() + 1))
-        points += [(node.X(), node.Y(), node.Z()) for node in nodes]
-        corners = (mesh.Triangle(index) for index in range(1, mesh.NbTriangles() + 1))
-        order = (1, 3, 2) if face.Orientation() == TopAbs_REVERSED else (1, 2, 3)
-        faces += [tuple(corner.Value(at) + start for at in order) for corner in corners]
-    return np.array(points).reshape(-1, 3), np.array(faces, dtype=np.int64).reshape(-1, 3)
+        nodes = np.array([mesh.Node(index).Coord() for index in range(1, mesh.NbNodes() + 1)])
+        corners = np.array([mesh.Triangle(index).Get() for index in range(1, mesh.NbTriangles() + 1)])
+        turn = place.Transformation()
+        rows = np.array([[turn.Value(row, column) for column in range(1, 5)] for row in range(1, 4)])
+        points.append(nodes @ rows[:, :3].T + rows[:, 3])
+        faces.append((corners[:, ::-1] if face.Orientation() == TopAbs_REVERSED else corners) + start - 1)
+        start += len(nodes)
+    return np.concatenate(points), np.concatenate(faces)

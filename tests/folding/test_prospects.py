@@ -56,8 +56,8 @@ def after_folding(made: Problem, patch: str) -> Scene:
 def beside_a_stick(
     board_at: Callable[..., Part], wall_at: Callable[..., Part], box: Callable[..., Part]
 ) -> tuple[Part, ...]:
-    """A wall 60 mm deep, and beside its front fifth an upright stick."""
-    stick = box("stick", (24, -24, 22), (4, 8, 40))
+    """A wall 60 mm deep, and beside its back fifth an upright stick."""
+    stick = box("stick", (24, 24, 22), (4, 8, 40))
     return (board_at("ground", 0), board_at("ceiling", 84), wall_at("wall", 0, 0, 84), stick)
 
 
@@ -80,7 +80,7 @@ def test_the_pieces_that_meet_something_are_blocked_and_the_others_are_not(
     # An elbow on the side of the stick meets it.
     for x in room.lanes["wall"]:
         is_blocked = room.blocked[x.number]
-        assert not is_blocked[2:].any() and is_blocked.tolist() == brute_force(made, own, around, x)
+        assert not is_blocked[:-2].any() and is_blocked.tolist() == brute_force(made, own, around, x)
         assert room.obstacles[x.number] == (("stick",) if is_blocked.any() else ())
     hit = [x for x in room.lanes["wall"] if room.blocked[x.number].any()]
     free = [x for x in room.lanes["wall"] if not room.blocked[x.number].any()]

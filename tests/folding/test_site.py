@@ -77,7 +77,8 @@ def test_a_plate_reaches_below_a_wall_that_it_meets_with_its_edge(
         (board_at("ground", 0), board_at("shelf", 40, 70, x=40), board_at("top", 80), wall_at("wall", 2, 0, 80))
     )
     held = placed(made).values()
-    low, high = (corner[:, 0] for corner in bounds(plate_boxes(made.base("shelf"), held, THICK)))
-    # Its own board, and a lip for each of the two panels of the wall.
+    ends = np.array([corner[:, 0] for corner in bounds(plate_boxes(made.base("shelf"), held, THICK))])
+    # Its own board, and a lip for each of the two panels of the wall; +x may be the other way in the canonical frame.
+    low, high = np.sort(ends * made.rotation[0, 0], axis=0)
     assert low == pytest.approx([5, -0.4, -0.4]) and high == pytest.approx([75, 4.4, 4.4])
     assert len(plate_boxes(made.base("ground"), held, THICK)) == 1

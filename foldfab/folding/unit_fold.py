@@ -221,7 +221,9 @@ def _wanted(problem: Problem, own: Repertoire, graph: Graph, picked: tuple[int, 
         return [p for p in own.unit.patches if own.later[p]]
     least = {p: _price(problem, p, many[0].variant) if many else np.inf for p, many in own.plain.items()}
     spare = graph.weight(picked) - sum(price for price in least.values() if np.isfinite(price))
-    return [p for p, later in own.later.items() if later and _price(problem, p, later[0]) - least[p] < spare]
+    prices = {p: _price(problem, p, later[0]) for p, later in own.later.items() if later}
+    affordable = {p: price for p, price in prices.items() if price - least[p] < spare}
+    return graph.promising(affordable) if affordable else []
 
 
 def _price(problem: Problem, patch: str, variant: Variant) -> float:

@@ -8,7 +8,9 @@ Costs are eq. 3, weighted by the importance λ of eq. 1.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -60,6 +62,7 @@ def variants(site: Site, options: FoldOptions, thickness: Thickness, *, may_slan
     return tuple(v for v in found if span is not None and _lengths(site, v, thickness.of(site.panel)) is not None)
 
 
+@cache
 def windows(steps: int) -> tuple[tuple[int, int], ...]:
     """All windows of N_s cutting steps, the whole patch first, then by size and place."""
     found = [(a, b) for a in range(steps) for b in range(a + 1, steps + 1)]
@@ -86,10 +89,18 @@ def window_span(site: Site, window: tuple[int, int], steps: int, thickness: Thic
     return np.array([middle - thickness.hinge_width / 2, middle + thickness.hinge_width / 2])
 
 
-def too_narrow(site: Site, many: tuple[tuple[int, int], ...], steps: int, thickness: Thickness) -> Bools:
-    """Which windows (n,) are too narrow for a hinge; the whole patch never is."""
-    least, edges = thickness.of(site.panel).hinge_width, [_extent(site, w, steps, thickness) for w in many]
-    return np.array([high - low < least and w != (0, steps) for w, (low, high) in zip(many, edges, strict=True)])
+def too_narrow(
+    sites: Sequence[Site], many: tuple[tuple[int, int], ...], steps: int, thickness: Thickness
+) -> Bools:  # fmt: skip
+    """Which windows of which patches (sites, windows) are too narrow for a hinge; the whole patch never is."""
+    least = np.array([thickness.of(site.panel).hinge_width for site in sites])
+    span = np.array([site.span for site in sites]).reshape(-1, 2)
+    width = np.array([site.patch.width for site in sites]).reshape(-1, 1)
+    first, last = np.array(many).T
+    start = width * (first / steps - 0.5) + np.where(first > 0, thickness.gap / 2, 0.0)
+    end = width * (last / steps - 0.5) - np.where(last < steps, thickness.gap / 2, 0.0)
+    found: Bools = np.minimum(end, span[:, 1:]) - np.maximum(start, span[:, :1]) < least[:, None]
+    return found & (np.array(many) != (0, steps)).any(1)
 
 
 def chain(site: Site, variant: Variant, span: Array, thickness: Thickness) -> Chain | None:

@@ -3,7 +3,7 @@
 All options of one patch form a clique, so a maximum-weight independent set of the conflict graph with weights
 max cost - cost + 1 takes exactly one option of each patch; it is found here directly as the cheapest such choice.
 
-First an option goes where another one of its group is no dearer and excludes no more (dominance); what is left falls
+Where the cheapest options of all groups go together, they are the choice. Else an option goes first where another one of its group is no dearer and excludes no more (dominance); what is left falls
 into groups that have no conflicts with each other, and each of these is solved by depth-first branch and bound: the
 group with the fewest options left is branched on first, options cheapest first, and a branch is cut where the cheapest
 options left in each group cannot beat the best choice known. Where that takes more than `LIMIT` branches the best
@@ -13,6 +13,7 @@ case. Options of the same cost are taken in the order given.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 import networkx as nx
@@ -56,8 +57,11 @@ def cheapest(
         gaps: gets by how much the choice may be dearer than the cheapest one, where the work did not suffice to tell.
         tangled: gets the groups that plain branch and bound gave up on, and says on which it need not be tried again.
     """
-    if not conflicts and not forbidden:
-        return tuple(int(np.argmin(c)) for c in costs) if all(np.isfinite(c.min()) for c in costs) else None
+    least = tuple(int(c.argmin()) for c in costs)
+    if not all(math.isfinite(c[i]) for c, i in zip(costs, least, strict=True)):
+        return None
+    if _go_together(least, conflicts, forbidden):
+        return least
     table = _by_group(len(costs), conflicts)
     held = _held(len(costs), forbidden)
     alive = [_undominated(costs[g], table[g], held[g]) for g in range(len(costs))]
@@ -76,6 +80,15 @@ def cheapest(
             return None
         taken.update(best)
     return tuple(taken[g] for g in range(len(costs)))
+
+
+def _go_together(
+    picked: tuple[int, ...], conflicts: Mapping[tuple[int, int], Bools], forbidden: frozenset[Combination]
+) -> bool:
+    """Whether no two options of a choice exclude each other, and no combination of them is forbidden."""
+    return not any(table[picked[g], picked[h]] for (g, h), table in conflicts.items()) and not any(
+        all(picked[g] == option for g, option in combination) for combination in forbidden
+    )
 
 
 def _by_group(count: int, conflicts: Mapping[tuple[int, int], Bools]) -> Table:

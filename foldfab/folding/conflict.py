@@ -11,6 +11,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
@@ -66,10 +67,13 @@ def _regions_met(
     return met | conflicts(new, regions(problem, own, known), cuts, same | apart) if known else met
 
 
+@cache
 def windows_table(windows: tuple[tuple[int, int], ...], steps: int) -> Array:
     """(windows, N_s) 1 where a window holds a piece."""
     place = np.arange(steps)
-    return np.array([(place >= a) & (place < b) for a, b in windows], dtype=np.float32)
+    found = np.array([(place >= a) & (place < b) for a, b in windows], dtype=np.float32)
+    found.setflags(write=False)
+    return found
 
 
 def table(

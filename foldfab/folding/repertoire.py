@@ -7,7 +7,7 @@ surroundings ask for them.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -160,7 +160,7 @@ def regions(problem: Problem, own: Repertoire, many: Iterable[Lane]) -> Batch:
     return joined(parts, -TOUCH)
 
 
-def awkwardness(problem: Problem, many: tuple[Lane, ...], offset: Array) -> Array:
+def awkwardness(problem: Problem, many: Sequence[Lane], offset: Array) -> Array:
     """(n,) how far lanes carry things out of the open furniture and how high their plinths are, relative to its size.
 
     `offset` (3,) is how far the unit has been carried since the open posture.

@@ -28,6 +28,9 @@ TABLE = 385
 REMEMBERED = 4096
 """Shapes whose tables are kept: furniture is made of a few, over and over again."""
 
+_MIRROR = np.array([-1.0, 1.0])
+"""What turns places of a chain that folds to the right into those of one that folds to the left."""
+
 
 def tilts(chain: Chain | Shape, progress: Array) -> Array:
     """Tilts (k, m) of the panels at each fold progress (k,), radians."""
@@ -75,12 +78,12 @@ def peak(chain: Chain) -> tuple[float, float]:
 
     The rise is about N_h (K + g)²/(2 a) · N_h/(N_h + 1) for an upright accordion; 0 where there is none.
     """
-    return _peak(chain.shape) if chain.shape.comes_down else (0.0, 0.0)
+    return _peak(to_the_right(chain.shape)) if chain.shape.comes_down else (0.0, 0.0)
 
 
 def descent(chain: Chain) -> tuple[Array, Array, int]:
     """Progress (n,) and height over the open posture (n,) of the far end along the whole fold, and the snap's place."""
-    return _descent(chain.shape)
+    return _descent(to_the_right(chain.shape))
 
 
 def turn(chain: Chain) -> float | None:
@@ -93,15 +96,28 @@ def turn(chain: Chain) -> float | None:
 
 def ends(chain: Chain) -> Array:
     """(3,) how far the last axis comes from open to folded, mm."""
-    first, last = _ends(chain.shape)
+    first, last = _seen(chain.shape, _ends(to_the_right(chain.shape)))
     way: Array = (last - first) @ chain.plane
     return way
 
 
 def start(chain: Chain) -> Array:
     """(3,) where the last axis stands open, from the root, mm."""
-    place: Array = _ends(chain.shape)[0] @ chain.plane
+    place: Array = _seen(chain.shape, _ends(to_the_right(chain.shape)))[0] @ chain.plane
     return place
+
+
+def to_the_right(shape: Shape) -> Shape:
+    """A shape, or the mirror image of one that folds to the left: both move alike, and one table does for both."""
+    if shape.turn > 0:
+        return shape
+    offsets = tuple(-offset for offset in shape.offsets)
+    return Shape(-shape.lean, -shape.turn, shape.lengths, offsets, shape.comes_down)
+
+
+def _seen(shape: Shape, places: Array) -> Array:
+    """Places (…, 2) of a chain that folds to the right, as those of the shape that it was made from."""
+    return places if shape.turn > 0 else places * _MIRROR
 
 
 @lru_cache(REMEMBERED)

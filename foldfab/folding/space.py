@@ -194,9 +194,12 @@ def _fill(table: Bools, place: Indices, a: Boxes, cuts_a: Array, b: Boxes, cuts_
 
 def _bounds_meet(a: tuple[Array, Array], b: tuple[Array, Array]) -> Bools:
     """Which pieces (k, n) and (k, m) have bounds that overlap, (k, n, m)."""
-    is_below: Bools = np.all(a[0][:, :, None] <= b[1][:, None], axis=-1)
-    is_above: Bools = np.all(a[1][:, :, None] >= b[0][:, None], axis=-1)
-    return is_below & is_above
+    (low_a, high_a), (low_b, high_b) = a, b
+    found = np.ones((len(low_a), low_a.shape[1], low_b.shape[1]), dtype=bool)
+    for axis in range(3):
+        found &= low_a[:, :, None, axis] <= high_b[:, None, :, axis]
+        found &= low_b[:, None, :, axis] <= high_a[:, :, None, axis]
+    return found
 
 
 def _once(a: Batch, b: Batch, frame: Indices, p: Indices, q: Indices) -> tuple[Indices, Indices, Indices]:

@@ -24,7 +24,7 @@ from foldfab.folding.site import Site
 from foldfab.folding.space import Batch, joined, still
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Array, Bools
-from foldfab.geometry.boxes import Boxes, bounds, moved
+from foldfab.geometry.boxes import Boxes, bounds, grown, moved
 
 ROOM_THICKNESSES = 2.0
 """Plinths and thicker panels may take a chain this many K out of what it sweeps without them."""
@@ -65,6 +65,8 @@ class Lane:
     """(3,) lower corner of all that it sweeps and of its far base when folded."""
     high: Array
     """(3,) upper corner."""
+    reach: tuple[Array, Array]
+    """Lower and upper corners (b, 3) of all that it sweeps, half the gap wider, as seen from each base of the unit."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -205,7 +207,7 @@ def _made(problem: Problem, own: Repertoire, site: Site, variant: Variant) -> La
     found = Lane(
         len(own.lanes), site.patch.name, variant, chain, _span(movers), ends(chain), peak(chain)[0],
         play_limit(chain, problem.thickness.gap), drag, cuts, beside, leaves_outline(problem, chain, beside),
-        *_with_far_base(problem, chain, low, high),
+        *_with_far_base(problem, chain, low, high), _seen_from_bases(problem, own, chain, drag, movers),
     )  # fmt: skip
     own.lanes.append(found)
     return found
@@ -241,9 +243,13 @@ def far_shift(own: Repertoire, lead: Lane, base: str, section: int) -> Array:
 
     A thick stack stops its far base before the nominal fold would.
     """
-    if base != lead.chain.far:
+    return _far_shift(own, lead.chain, lead.drag, base, section)
+
+
+def _far_shift(own: Repertoire, chain: Chain, drag: Array | None, base: str, section: int) -> Array:
+    if base != chain.far:
         return upright(own.nominal.down[base][section])
-    return lead.drag if lead.drag is not None else upright(_stopped(own.nominal, lead.chain, section))
+    return drag if drag is not None else upright(_stopped(own.nominal, chain, section))
 
 
 def stops_early(own: Repertoire, x: Lane) -> bool:
@@ -266,23 +272,25 @@ def upright(height: Array) -> Array:
     return shift
 
 
+def _seen_from_bases(
+    problem: Problem, own: Repertoire, chain: Chain, drag: Array | None, movers: Mapping[int, Boxes]
+) -> tuple[Array, Array]:
+    lows, highs = [], []
+    for section, boxes in movers.items():
+        low, high = bounds(grown(boxes, problem.thickness.gap / 2 - TOUCH))
+        shift = np.stack([_far_shift(own, chain, drag, base, section) for base in own.unit.bases])
+        lows.append((low.min(1) - shift).min(1))
+        highs.append((high.max(1) - shift).max(1))
+    return np.min(lows, axis=0), np.max(highs, axis=0)
+
+
 def _reach(problem: Problem, own: Repertoire) -> dict[str, tuple[Array, Array]]:
     thickest = max(problem.sites[p].panel for p in own.unit.patches)
     margin = ROOM_THICKNESSES * (thickest + problem.thickness.gap)
-    found = {b: (np.full(3, np.inf), np.full(3, -np.inf)) for b in own.unit.bases}
-    for section in range(own.nominal.sections):
-        straight = [x for x in own.lanes if x.drag is None]
-        for group in (straight, *([x] for x in own.lanes if x.drag is not None)):
-            many = swept(problem, own, group, section)
-            if many is None:
-                continue
-            far, drag = group[0].chain.far, group[0].drag
-            least, most = many.low.min(1), many.high.max(1)
-            for base in own.unit.bases:
-                shift = drag if base == far and drag is not None else upright(own.nominal.down[base][section])
-                low, high = (least - shift).min(0) - margin, (most - shift).max(0) + margin
-                found[base] = (np.minimum(found[base][0], low), np.maximum(found[base][1], high))
-    return found
+    bases = own.unit.bases
+    low = np.array([x.reach[0] for x in own.lanes]).reshape(-1, len(bases), 3).min(axis=0, initial=np.inf) - margin
+    high = np.array([x.reach[1] for x in own.lanes]).reshape(-1, len(bases), 3).max(axis=0, initial=-np.inf) + margin
+    return dict(zip(bases, zip(low, high, strict=True), strict=True))
 
 
 def _with_far_base(problem: Problem, chain: Chain, low: Array, high: Array) -> tuple[Array, Array]:

@@ -143,7 +143,6 @@ def _first(
 
 def _own_plates(number: Mapping[str, int], chains: tuple[Chain, ...], around: Surroundings) -> Bools:
     """(chains, boxes) the plates that a chain's own hinges stand on."""
-    plate = np.array([s.base if s.state == "base" else -1 for s in around.solids], dtype=np.int64)[around.owner]
-    own = np.array([[number[c.anchor], number[c.far or c.anchor]] for c in chains])
-    found: Bools = (own[:, :, None] == plate).any(1) if len(chains) else np.zeros((0, len(plate)), dtype=bool)
+    own = np.array([[number[c.anchor], number[c.far or c.anchor]] for c in chains]).reshape(-1, 2)
+    found: Bools = (own[:, :, None] == around.plate).any(1)
     return found

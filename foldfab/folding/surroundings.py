@@ -19,7 +19,7 @@ from foldfab.folding.space import Batch
 from foldfab.folding.tree import between, clusters
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Array, Bools, Indices
-from foldfab.geometry.boxes import Boxes, near_pairs, stacked
+from foldfab.geometry.boxes import Boxes, bounds, moved, near_pairs, stacked
 
 NEARLY = 0.2
 """What is unfolded and keeps bases apart by less than this share of K more than their stack is not in the way."""
@@ -45,8 +45,12 @@ class Surroundings:
     """(n,) the cluster of each box of the solids."""
     owner: Indices
     """(n,) the solid of each box."""
+    plate: Indices
+    """(n,) the base whose plate each box belongs to, by number; -1 for what is no plate."""
     boxes: Boxes
     """(n,) where they are, in the unit's frame."""
+    corners: tuple[Array, Array]
+    """Lower and upper corners (n, 3) of the boxes' bounds."""
     limits: Limits
     standing: frozenset[str]
     """What stands unfolded between two bases that a chain of the unit would bring together."""
@@ -85,12 +89,14 @@ def _looked(problem: Problem, scene: Scene, own: Repertoire) -> Surroundings:
     picked = np.nonzero(near)[0]
     solids = tuple(scene.solids[i] for i in picked)
     owner = np.repeat(np.arange(len(solids)), [len(s.boxes) for s in solids])
-    boxes = stacked([s.boxes for s in solids])
-    boxes = Boxes(boxes.center + shift[picked][owner], boxes.axes, boxes.half)
+    plate = np.array([s.base if s.state == "base" else -1 for s in solids], dtype=np.int64)[owner]
+    boxes = moved(stacked([s.boxes for s in solids]), shift[picked][owner])
     limits, standing = _limits(problem, scene, unit, pairs, shift)
     whole = _bounds_by_cluster(unit, low, high, group, is_other) if problem.options.stay_in_box else {}
     key = _key(problem, scene, unit, limits, standing, solids, np.concatenate([low[picked], high[picked]]), offset)
-    return Surroundings(cluster, offset, solids, group[picked][owner], owner, boxes, limits, standing, whole, key)
+    return Surroundings(
+        cluster, offset, solids, group[picked][owner], owner, plate, boxes, bounds(boxes), limits, standing, whole, key
+    )
 
 
 def depends_on(problem: Problem, unit: Unit, around: Surroundings) -> set[str]:

@@ -20,6 +20,8 @@ from foldfab.geometry.boxes import Boxes, bounds, near_pairs, overlaps
 
 PARALLEL = 1.0 - 1e-9
 """Cosine above which two hinge directions are the same line."""
+SQUARE = 1e-9
+"""Cosine below which two hinge directions are square to each other."""
 INSET = 1e-6
 """Pieces end this much short of their cuts, mm, so that neighbours do not count as meeting."""
 SAMPLE = 8
@@ -168,19 +170,16 @@ def conflicts(a: Batch, b: Batch, cuts: Array, excluded: Bools) -> dict[tuple[in
 
 def _fill(table: Bools, place: Indices, a: Boxes, cuts_a: Array, b: Boxes, cuts_b: Array) -> None:
     """Marks in `table` (pairs, N_s, N_s) which pieces of overlapping boxes (k,) meet; `place` (k,) is their pair."""
-    low_a, high_a = _intervals(a, cuts_a)
-    low_b, high_b = _intervals(b, cuts_b)
+    one, other = _intervals(a, cuts_a), _intervals(b, cuts_b)
+    real: Bools = (one[1] > one[0])[:, :, None] & (other[1] > other[0])[:, None]
     cosine = np.einsum("kj,kj->k", a.axes[:, 1], b.axes[:, 1])
-    same = np.abs(cosine) > PARALLEL
-    # On the line of `a`, where `b` may run the other way.
-    sign = np.sign(cosine)[:, None]
-    low, high = np.minimum(sign * low_b, sign * high_b), np.maximum(sign * low_b, sign * high_b)
-    real: Bools = (high_a > low_a)[:, :, None] & (high_b > low_b)[:, None]
-    row, s, t = np.nonzero(
-        real & same[:, None, None] & (low_a[:, :, None] < high[:, None]) & (low[:, None] < high_a[:, :, None])
-    )
+    same, square = np.abs(cosine) > PARALLEL, np.abs(cosine) < SQUARE
+    met = real & _share((one[0], one[1]), _on_line(other, cosine)) & same[:, None, None]
+    if square.any():
+        met |= real & _share(_heights(b, a.axes[:, 1], one), _heights(a, b.axes[:, 1], other)) & square[:, None, None]
+    row, s, t = np.nonzero(met)
     table[place[row], s, t] = True
-    rest = np.nonzero(~same)[0]
+    rest = np.nonzero(~same & ~square)[0]
     if len(rest):
         first, second = _pieces(a[rest], cuts_a[rest]), _pieces(b[rest], cuts_b[rest])
         near: Bools = real[rest] & _bounds_meet(bounds(first), bounds(second))
@@ -190,6 +189,46 @@ def _fill(table: Bools, place: Indices, a: Boxes, cuts_a: Array, b: Boxes, cuts_
             row = np.arange(len(rest))[part][row]
             hit = overlaps(first[row, s], second[row, t])
             table[place[rest[row[hit]]], s[hit], t[hit]] = True
+
+
+def _on_line(intervals: tuple[Array, Array], cosine: Array) -> tuple[Array, Array]:
+    """Intervals (k, n) along hinge directions, on lines that may run the other way."""
+    low, high = (end * np.sign(cosine)[:, None] for end in intervals)
+    return np.minimum(low, high), np.maximum(low, high)
+
+
+def _share(a: tuple[Array, Array], b: tuple[Array, Array]) -> Bools:
+    """Which intervals (k, n) and (k, m) have more than an end in common, (k, n, m)."""
+    found: Bools = (a[0][:, :, None] < b[1][:, None]) & (b[0][:, None] < a[1][:, :, None])
+    return found
+
+
+def _heights(boxes: Boxes, along: Array, intervals: tuple[Array, Array]) -> tuple[Array, Array]:
+    """Between which heights boxes (k,) reach into intervals (k, n) of horizontal lines square to their hinges.
+
+    Boxes whose hinges are square to each other meet in those pieces in which they reach the same height: where one of
+    them is along its own hinge does not matter to what the other one needs.
+    """
+    middle = np.einsum("kj,kj->k", boxes.center, along)[:, None]
+    low, high = intervals[0] - middle, intervals[1] - middle
+    sides, rises, half = np.einsum("kij,kj->ki", boxes.axes[:, ::2], along), boxes.axes[:, ::2, 2], boxes.half[:, ::2]
+    top = _highest(sides, rises, half, low, high)
+    # A box is the same seen from its other end.
+    return boxes.center[:, 2:] - _highest(sides, rises, half, -high, -low), boxes.center[:, 2:] + top
+
+
+def _highest(sides: Array, rises: Array, half: Array, low: Array, high: Array) -> Array:
+    """(k, n) how far rectangles reach above their middle where they are between `low` and `high` (k, n) beside it.
+
+    `sides` and `rises` (k, 2) are the components of their unit sides, `half` (k, 2) their half lengths; -inf where they
+    do not reach there.
+    """
+    corner = (sides * np.sign(rises) * half).sum(1)[:, None]
+    at = np.clip(corner, low, high)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        edges = (half[:, :, None] - (sides * np.sign(rises))[:, :, None] * at[:, None]) / np.abs(rises)[:, :, None]
+    found = np.where(rises[:, :, None] == 0.0, np.inf, edges).min(1)
+    return np.where(np.abs(at) <= (np.abs(sides) * half).sum(1)[:, None], found, -np.inf)
 
 
 def _bounds_meet(a: tuple[Array, Array], b: tuple[Array, Array]) -> Bools:

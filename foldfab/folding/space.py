@@ -24,6 +24,8 @@ SQUARE = 1e-9
 """Cosine below which two hinge directions are square to each other."""
 INSET = 1e-6
 """Pieces end this much short of their cuts, mm, so that neighbours do not count as meeting."""
+_LEVEL = 1e-300
+"""What is divided by instead of the slope of a level side."""
 SAMPLE = 8
 """One in this many meetings is looked at first."""
 CHUNK = 20_000
@@ -134,23 +136,35 @@ def blocked(a: Batch, cuts: Array, b: Batch, excluded: Excluded = None) -> tuple
         (lanes, N_s), and the lane and box of `b` of each meeting (k,), (k,), each once.
     """
     found = np.zeros((len(cuts), cuts.shape[1] - 1), dtype=bool)
-    lanes, others = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
+    met: set[int] = set()
     for frame, p, q in meetings(a, b, excluded):
         frame, p, q = _once(a, b, frame, p, q)
-        box = _at(a, frame, p)
-        pieces = _pieces(box, cuts[a.lane[p]])
-        shape = pieces.half.shape[:-1]
-        other = _at(b, frame, q)
+        lane = a.lane[p]
+        row, piece = np.nonzero(_blocked(_at(a, frame, p), cuts[lane], _at(b, frame, q)))
+        found[lane[row], piece] = True
+        met.update((lane[row] * len(b) + q[row]).tolist())
+    lanes, others = np.divmod(np.array(sorted(met), dtype=np.int64), max(len(b), 1))
+    return found, lanes, others
+
+
+def _blocked(a: Boxes, cuts: Array, b: Boxes) -> Bools:
+    """(k, N_s) which pieces of boxes (k,) meet the boxes that they overlap."""
+    one = _intervals(a, cuts)
+    real: Bools = one[1] > one[0]
+    square = np.abs(np.einsum("kj,kj->k", a.axes[:, 1], b.axes[:, 1])) < SQUARE
+    found = np.zeros(real.shape, dtype=bool)
+    k = np.nonzero(square)[0]
+    if len(k):
+        first, second, own = a[k], b[k], (one[0][k], one[1][k])
+        found[k] = _share(_heights(second, first.axes[:, 1], own), _heights(first, second.axes[:, 1], _whole(second)))[
+            ..., 0
+        ]
+    k = np.nonzero(~square)[0]
+    if len(k):
+        pieces, other = _pieces(a[k], cuts[k]), b[k]
         wide = Boxes(other.center[:, None], other.axes[:, None], other.half[:, None])
-        met = overlaps(pieces, _shaped(wide, shape)) & (pieces.half[..., 1] > 0)
-        row, piece = np.nonzero(met)
-        found[a.lane[p[row]], piece] = True
-        lanes.append(a.lane[p[row]])
-        others.append(q[row])
-    if len(lanes) == 1:
-        return found, lanes[0], others[0]
-    pairs = np.unique(np.stack([np.concatenate(lanes), np.concatenate(others)]), axis=1)
-    return found, pairs[0], pairs[1]
+        found[k] = overlaps(pieces, _shaped(wide, pieces.half.shape[:-1]))
+    return found & real
 
 
 def conflicts(a: Batch, b: Batch, cuts: Array, excluded: Bools) -> dict[tuple[int, int], Bools]:
@@ -212,9 +226,10 @@ def _heights(boxes: Boxes, along: Array, intervals: tuple[Array, Array]) -> tupl
     middle = np.einsum("kj,kj->k", boxes.center, along)[:, None]
     low, high = intervals[0] - middle, intervals[1] - middle
     sides, rises, half = np.einsum("kij,kj->ki", boxes.axes[:, ::2], along), boxes.axes[:, ::2, 2], boxes.half[:, ::2]
-    top = _highest(sides, rises, half, low, high)
-    # A box is the same seen from its other end.
-    return boxes.center[:, 2:] - _highest(sides, rises, half, -high, -low), boxes.center[:, 2:] + top
+    # A box is the same seen from its other end: how far it reaches down is how far it reaches up there.
+    both = _highest(sides, rises, half, np.concatenate([low, -high], axis=1), np.concatenate([high, -low], axis=1))
+    count, height = low.shape[1], boxes.center[:, 2:]
+    return height - both[:, count:], height + both[:, :count]
 
 
 def _highest(sides: Array, rises: Array, half: Array, low: Array, high: Array) -> Array:
@@ -223,11 +238,12 @@ def _highest(sides: Array, rises: Array, half: Array, low: Array, high: Array) -
     `sides` and `rises` (k, 2) are the components of their unit sides, `half` (k, 2) their half lengths; -inf where they
     do not reach there.
     """
-    corner = (sides * np.sign(rises) * half).sum(1)[:, None]
-    at = np.clip(corner, low, high)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        edges = (half[:, :, None] - (sides * np.sign(rises))[:, :, None] * at[:, None]) / np.abs(rises)[:, :, None]
-    found = np.where(rises[:, :, None] == 0.0, np.inf, edges).min(1)
+    leans = sides * np.sign(rises)
+    corner = (leans * half).sum(1)[:, None]
+    at = np.minimum(np.maximum(corner, low), high)
+    # A level side bounds no height.
+    slopes = np.maximum(np.abs(rises), _LEVEL)[:, :, None]
+    found = ((half[:, :, None] - leans[:, :, None] * at[:, None]) / slopes).min(1)
     return np.where(np.abs(at) <= (np.abs(sides) * half).sum(1)[:, None], found, -np.inf)
 
 
@@ -262,6 +278,12 @@ def _intervals(boxes: Boxes, cuts: Array) -> tuple[Array, Array]:
     low = np.maximum((middle - boxes.half[:, 1])[:, None], cuts[:, :-1] + INSET)
     high = np.minimum((middle + boxes.half[:, 1])[:, None], cuts[:, 1:] - INSET)
     return low, high
+
+
+def _whole(boxes: Boxes) -> tuple[Array, Array]:
+    """Where boxes (k,) begin and end (k, 1) along their hinge direction."""
+    middle = np.einsum("kj,kj->k", boxes.center, boxes.axes[:, 1])
+    return (middle - boxes.half[:, 1])[:, None], (middle + boxes.half[:, 1])[:, None]
 
 
 def _pieces(boxes: Boxes, cuts: Array) -> Boxes:

@@ -134,7 +134,7 @@ def test_a_unit_may_be_shown_open_with_its_hinges_without_being_folded(
 def test_what_is_shown_anew_takes_the_place_of_what_was_shown_before(
     table_in_box: Problem, table_fold: UnitFold
 ) -> None:
-    once = shown(open_scene(table_in_box), table_fold.unit, table_fold.chains, is_folded=False)
+    once = shown(open_scene(table_in_box), table_fold.unit.patches, table_fold.chains, is_folded=False)
     twice = shown(once, table_fold.unit.patches, table_fold.chains, is_folded=True)
     assert_consistent(twice)
     assert {s.state for p in ("leg-left", "leg-right") for s in solids_of(twice, p)} == {"folded"}

@@ -11,11 +11,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from foldfab.folding.mechanism import REMEMBERED, joints, start, tilts, to_the_right
+from foldfab.folding.mechanism import REMEMBERED, directions, joined, start, tilts, to_the_right
 from foldfab.folding.model import Chain, Shape, Thickness
 from foldfab.geometry.arrays import Array
 from foldfab.geometry.boxes import Boxes, stacked
-from foldfab.geometry.rotation import cosine, sine
 from foldfab.scaffold.model import BasePatch
 
 RIM = 0.4
@@ -58,7 +57,7 @@ def base_boxes(base: BasePatch, thickness: Thickness) -> Boxes:
 
 def moving_boxes(chain: Chain, thickness: Thickness, progress: Array) -> Boxes:
     """Slabs and knuckles (k, 2 m - 1) of a chain at each progress (k,), relative to the anchor's open position."""
-    spans = tuple(map(tuple, np.vstack([chain.span, chain.hinge_spans[1:-1]]).tolist()))
+    spans = (tuple(chain.span.tolist()), *map(tuple, chain.hinge_spans[1:-1].tolist()))
     shape, when = to_the_right(chain.shape), np.asarray(progress, dtype=np.float64).tobytes()
     made = _moving(shape, chain.panel, thickness.gap, spans, when)
     if shape is not chain.shape:
@@ -73,13 +72,12 @@ def _moving(shape: Shape, panel: float, gap: float, spans: tuple[tuple[float, fl
     `spans` holds the extent of the panels and of each inserted hinge along the hinge direction.
     """
     angles = tilts(shape, np.frombuffer(progress))
-    axes_flat = joints(shape, angles)
+    normal, length = directions(angles)
+    axes_flat = joined(shape, normal, length)
     count = len(shape.lengths)
     axes = np.zeros((*angles.shape, 3, 3))
-    axes[..., 0, 0] = axes[..., 2, 2] = cosine(angles)
+    axes[..., 0, ::2], axes[..., 2, ::2] = normal, length
     axes[..., 1, 1] = 1.0
-    axes[..., 2, 0] = sine(angles)
-    axes[..., 0, 2] = -axes[..., 2, 0]
     low, high = np.full(count, gap / 2), np.array(shape.lengths) - gap / 2
     low[0], high[-1] = 0.0, shape.lengths[-1]
     span = np.array(spans)

@@ -107,15 +107,16 @@ def chain(site: Site, variant: Variant, span: Array, thickness: Thickness) -> Ch
     """The thick chain of a variant with the given extent, or None where its panels would be too short."""
     thickness = thickness.of(site.panel + variant.extra)
     lengths = _lengths(site, variant, thickness)
-    if lengths is None or float(np.ptp(span)) < thickness.hinge_width - 1e-9:
+    if lengths is None or float(span[1] - span[0]) < thickness.hinge_width - 1e-9:
         return None
-    turn = np.pi / 2 if variant.side == "r" else -np.pi / 2
-    signs = -np.sign(turn) * np.where(np.arange(variant.hinges) % 2 == 0, 1.0, -1.0)
-    offsets = np.concatenate([[0.0], signs * thickness.axis_offset, [0.0]])
+    turn = math.pi / 2 if variant.side == "r" else -math.pi / 2
+    first = -math.copysign(thickness.axis_offset, turn)
+    offsets = np.array([0.0, *(first if i % 2 == 0 else -first for i in range(variant.hinges)), 0.0])
     rise = thickness.axis_height + variant.pads[0]
     root = site.foot + rise * (site.rise + math.tan(site.lean) * site.across)
-    ends = [_on(span, held, thickness) for held in site.held]
-    hinge_spans = np.array([ends[0], *([span] * variant.hinges), ends[1]])
+    start, end = span.tolist()
+    ends = [_on(start, end, held, thickness) for held in site.held]
+    hinge_spans = np.array([ends[0], *([(start, end)] * variant.hinges), ends[1]])
     return Chain(
         site.patch.name, site.anchor, site.far, variant.mechanism, root, site.across, site.along, site.rise, site.lean,
         turn, lengths, offsets, span, hinge_spans, variant.pads, thickness.panel,
@@ -157,11 +158,10 @@ def _lengths(site: Site, variant: Variant, thickness: Thickness) -> Array | None
     return None if is_short else np.array(lengths)
 
 
-def _on(span: Array, held: tuple[float, float], thickness: Thickness) -> Array:
+def _on(start: float, end: float, held: tuple[float, float], thickness: Thickness) -> tuple[float, float]:
     """The part of a span that lies over its base, at least as wide as a hinge and within the span."""
-    start, end = span.tolist()
     low, high, half = max(start, held[0]), min(end, held[1]), thickness.hinge_width / 2
     if high - low >= 2 * half:
-        return np.array([low, high])
+        return low, high
     middle = min(max((low + high) / 2, start + half), end - half)
-    return np.array([middle - half, middle + half])
+    return middle - half, middle + half

@@ -44,12 +44,25 @@ def tilts(chain: Chain | Shape, progress: Array) -> Array:
 
 def joints(chain: Chain | Shape, angles: Array) -> Array:
     """Hinge axes (k, m + 1, 2) in the plane of the chain relative to the root, for tilts (k, m); a tip last."""
-    normal, length = _directions(angles)
+    return joined(chain, *directions(angles))
+
+
+def joined(chain: Chain | Shape, normal: Array, length: Array) -> Array:
+    """The same for panels with these face normals and length directions (k, m, 2)."""
     offsets, lengths = np.asarray(chain.offsets), np.asarray(chain.lengths)
-    found = np.zeros((len(angles), len(lengths) + 1, 2))
+    found = np.zeros((len(normal), len(lengths) + 1, 2))
     steps = (offsets[1:] - offsets[:-1])[:, None] * normal + lengths[:, None] * length
     np.cumsum(steps, axis=1, out=found[:, 1:])
     return found
+
+
+def directions(angles: Array) -> tuple[Array, Array]:
+    """Face normals and length directions (k, m, 2) of panels with tilts (k, m), in the plane of the chain."""
+    normal, length = np.empty((*angles.shape, 2)), np.empty((*angles.shape, 2))
+    normal[..., 0] = length[..., 1] = cosine(angles)
+    length[..., 0] = sine(angles)
+    normal[..., 1] = -length[..., 0]
+    return normal, length
 
 
 def reach(chain: Chain | Shape, progress: Array) -> Array:
@@ -66,7 +79,7 @@ def frames(chain: Chain, progress: Array) -> tuple[Array, Array]:
         are the face normal, the hinge direction and the length direction.
     """
     angles = tilts(chain, progress)
-    normal, length = _directions(angles)
+    normal, length = directions(angles)
     flat = joints(chain, angles)[:, :-1] - chain.offsets[:-1, None] * normal
     plane = chain.plane
     along = np.broadcast_to(chain.along, (*angles.shape, 3))
@@ -147,14 +160,6 @@ def _peak(shape: Shape) -> tuple[float, float]:
     height = reach(shape, s)[:, 1]
     top = int(np.argmax(height))
     return (float(height[top] - height[0]), float(s[top])) if top else (0.0, 0.0)
-
-
-def _directions(angles: Array) -> tuple[Array, Array]:
-    normal, length = np.empty((*angles.shape, 2)), np.empty((*angles.shape, 2))
-    normal[..., 0] = length[..., 1] = cosine(angles)
-    length[..., 0] = sine(angles)
-    normal[..., 1] = -length[..., 0]
-    return normal, length
 
 
 def _in_place(shape: Shape, s: Array) -> Array:

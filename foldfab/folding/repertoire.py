@@ -7,6 +7,7 @@ surroundings ask for them.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -24,7 +25,7 @@ from foldfab.folding.site import Site
 from foldfab.folding.space import Batch, joined, still
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Array, Bools
-from foldfab.geometry.boxes import Boxes, bounds, grown, moved
+from foldfab.geometry.boxes import Boxes, bounds, moved
 
 ROOM_THICKNESSES = 2.0
 """Plinths and thicker panels may take a chain this many K out of what it sweeps without them."""
@@ -66,7 +67,7 @@ class Lane:
     high: Array
     """(3,) upper corner."""
     reach: tuple[Array, Array]
-    """Lower and upper corners (b, 3) of all that it sweeps, half the gap wider, as seen from each base of the unit."""
+    """Lower and upper corners (b, 3) of all that it sweeps and half the gap around it, as seen from each base."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -196,8 +197,9 @@ def _made(problem: Problem, own: Repertoire, site: Site, variant: Variant) -> La
     if not movers:
         return None
     own.movers.append(movers)
-    corners = [bounds(boxes) for boxes in movers.values()]
-    low, high = np.min([c[0].min((0, 1)) for c in corners], 0), np.max([c[1].max((0, 1)) for c in corners], 0)
+    corners = {section: bounds(boxes) for section, boxes in movers.items()}
+    low = np.min([low.min((0, 1)) for low, _ in corners.values()], axis=0)
+    high = np.max([high.max((0, 1)) for _, high in corners.values()], axis=0)
     middle, width, gap = float(site.foot @ site.along), site.patch.width, problem.thickness.gap
     cuts = middle - width / 2 + width * np.arange(steps + 1) / steps
     # Half the gap on either side belongs to the outermost pieces.
@@ -207,7 +209,7 @@ def _made(problem: Problem, own: Repertoire, site: Site, variant: Variant) -> La
     found = Lane(
         len(own.lanes), site.patch.name, variant, chain, _span(movers), ends(chain), peak(chain)[0],
         play_limit(chain, problem.thickness.gap), drag, cuts, beside, leaves_outline(problem, chain, beside),
-        *_with_far_base(problem, chain, low, high), _seen_from_bases(problem, own, chain, drag, movers),
+        *_with_far_base(problem, chain, low, high), _seen_from_bases(problem, own, chain, drag, corners),
     )  # fmt: skip
     own.lanes.append(found)
     return found
@@ -273,15 +275,16 @@ def upright(height: Array) -> Array:
 
 
 def _seen_from_bases(
-    problem: Problem, own: Repertoire, chain: Chain, drag: Array | None, movers: Mapping[int, Boxes]
+    problem: Problem, own: Repertoire, chain: Chain, drag: Array | None, corners: Mapping[int, tuple[Array, Array]]
 ) -> tuple[Array, Array]:
+    # Where a tilted box gets wider by half the gap, its bounds do so by up to a diagonal of it.
+    margin = math.sqrt(3.0) * problem.thickness.gap / 2
     lows, highs = [], []
-    for section, boxes in movers.items():
-        low, high = bounds(grown(boxes, problem.thickness.gap / 2 - TOUCH))
-        shift = np.stack([_far_shift(own, chain, drag, base, section) for base in own.unit.bases])
+    for section, (low, high) in corners.items():
+        shift = np.array([_far_shift(own, chain, drag, base, section) for base in own.unit.bases])
         lows.append((low.min(1) - shift).min(1))
         highs.append((high.max(1) - shift).max(1))
-    return np.min(lows, axis=0), np.max(highs, axis=0)
+    return np.min(lows, axis=0) - margin, np.max(highs, axis=0) + margin
 
 
 def _reach(problem: Problem, own: Repertoire) -> dict[str, tuple[Array, Array]]:

@@ -38,6 +38,8 @@ class Problem:
     """The recipe's parts, by name."""
     faces: Mapping[str, anatomy.Face]
     """By base, the faces of its plate."""
+    plates: Mapping[str, tuple[Array, Array]]
+    """By base, lower and upper corner (3,) of its plate, mm."""
     furniture: Boxes
     """(n,) the open furniture with thickness."""
     outline: tuple[Array, Array]

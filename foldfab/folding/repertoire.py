@@ -198,8 +198,8 @@ def _made(problem: Problem, own: Repertoire, site: Site, variant: Variant) -> La
         return None
     own.movers.append(movers)
     corners = {section: bounds(boxes) for section, boxes in movers.items()}
-    low = np.min([low.min((0, 1)) for low, _ in corners.values()], axis=0)
-    high = np.max([high.max((0, 1)) for _, high in corners.values()], axis=0)
+    low = np.array([low.min((0, 1)) for low, _ in corners.values()]).min(0)
+    high = np.array([high.max((0, 1)) for _, high in corners.values()]).max(0)
     middle, width, gap = float(site.foot @ site.along), site.patch.width, problem.thickness.gap
     cuts = middle - width / 2 + width * np.arange(steps + 1) / steps
     # Half the gap on either side belongs to the outermost pieces.
@@ -284,7 +284,7 @@ def _seen_from_bases(
         shift = np.array([_far_shift(own, chain, drag, base, section) for base in own.unit.bases])
         lows.append((low.min(1) - shift).min(1))
         highs.append((high.max(1) - shift).max(1))
-    return np.min(lows, axis=0) - margin, np.max(highs, axis=0) + margin
+    return np.array(lows).min(0) - margin, np.array(highs).max(0) + margin
 
 
 def _reach(problem: Problem, own: Repertoire) -> dict[str, tuple[Array, Array]]:
@@ -299,5 +299,5 @@ def _reach(problem: Problem, own: Repertoire) -> dict[str, tuple[Array, Array]]:
 def _with_far_base(problem: Problem, chain: Chain, low: Array, high: Array) -> tuple[Array, Array]:
     if chain.far is None:
         return low, high
-    plate, way = bounds(anatomy.base_boxes(problem.scaffold.base(chain.far), problem.thickness)), ends(chain)
-    return np.minimum(low, plate[0].min(0) + way), np.maximum(high, plate[1].max(0) + way)
+    (least, most), way = problem.plates[chain.far], ends(chain)
+    return np.minimum(low, least + way), np.maximum(high, most + way)

@@ -107,13 +107,16 @@ def posed(scaffold: Scaffold, thickness: Thickness) -> Problem:
     placed = {site.patch.name: site for site in sites(scaffold, thickness)}
     units = decompose(scaffold)
     tree = unit_tree(tuple(base.name for base in scaffold.bases), units)
-    plates = [anatomy.base_boxes(base, thickness) for base in scaffold.bases]
-    furniture = stacked([*plates, *(slab(site, thickness) for site in placed.values())])
+    plates = {base.name: anatomy.base_boxes(base, thickness) for base in scaffold.bases}
+    corners = {name: bounds(plate) for name, plate in plates.items()}
+    furniture = stacked([*plates.values(), *(slab(site, thickness) for site in placed.values())])
     low, high = bounds(furniture)
     problem = Problem(
         scaffold, scaffold.recipe.fold, thickness, placed, units, tree, {p: u for u in units for p in u.patches},
         {part.name: part for part in scaffold.recipe.parts},
-        {base.name: anatomy.faces(base, thickness) for base in scaffold.bases}, furniture, (low.min(0), high.max(0)),
+        {base.name: anatomy.faces(base, thickness) for base in scaffold.bases},
+        {name: (lower.min(0), upper.max(0)) for name, (lower, upper) in corners.items()},
+        furniture, (low.min(0), high.max(0)),
     )  # fmt: skip
     return replace(problem, twins=twins(problem))
 

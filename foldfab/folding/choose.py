@@ -18,7 +18,6 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from foldfab.folding.eliminate import eliminated
 from foldfab.folding.exact import proven
@@ -130,21 +129,14 @@ def _undominated(price: Array, conflicts: Mapping[int, Bools], held: list[int]) 
 
 def _dominated(excludes: Bools, free: Bools) -> Bools:
     """Which options (n,), cheapest first, one before them dominates: it is free, and excludes (n, m) no more."""
-    words = _words(excludes)
-    others, found = ~words, np.zeros(len(words), dtype=bool)
-    for i in np.nonzero(free)[0].tolist():
-        # What is dominated dominates nothing that its own dominator does not.
-        if not found[i]:
-            found[i + 1 :] |= ~(words[i] & others[i + 1 :]).any(1)
+    # What is dominated dominates nothing that its own dominator does not.
+    dominators: list[int] = []
+    found = np.zeros(len(excludes), dtype=bool)
+    for i, (own, is_free) in enumerate(zip(_sets(excludes), free.tolist(), strict=True)):
+        found[i] = any(not other & ~own for other in dominators)
+        if is_free and not found[i]:
+            dominators.append(own)
     return found
-
-
-def _words(rows: Bools) -> NDArray[np.uint64]:
-    """Rows of Booleans (n, m) as bits, 64 in a word."""
-    count = -(-rows.shape[1] // 64) * 8
-    bits = np.zeros((len(rows), count), dtype=np.uint8)
-    bits[:, : -(-rows.shape[1] // 8)] = np.packbits(rows, axis=1)
-    return bits.view(np.uint64)
 
 
 def _islands(alive: list[Bools], table: Table, forbidden: frozenset[Combination]) -> list[list[int]]:

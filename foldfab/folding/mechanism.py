@@ -120,6 +120,11 @@ def start(chain: Chain) -> Array:
     return place
 
 
+def open_height(chain: Chain) -> float:
+    """How high the last axis stands above the root in the open posture, mm."""
+    return float(_ends(to_the_right(chain.shape))[0, 1])
+
+
 def to_the_right(shape: Shape) -> Shape:
     """A shape, or the mirror image of one that folds to the left: both move alike, and one table does for both."""
     if shape.turn > 0:

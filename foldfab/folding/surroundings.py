@@ -19,7 +19,7 @@ from foldfab.folding.space import Batch
 from foldfab.folding.tree import between, clusters
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Array, Bools, Indices
-from foldfab.geometry.boxes import Boxes, bounds, moved, near_pairs, stacked
+from foldfab.geometry.boxes import DENSE, Boxes, bounds, moved, near_pairs, stacked
 
 NEARLY = 0.2
 """What is unfolded and keeps bases apart by less than this share of K more than their stack is not in the way."""
@@ -126,6 +126,7 @@ def _across(
     a = b = np.nonzero(is_other)[0]
     if len(unit.bases) == 2:
         a, b = a[group[a] == 0], b[group[b] == 1]
+    if len(unit.bases) == 2 and len(a) * len(b) > DENSE:
         a = _facing(low, high, a, b, clear[0, 1])
         b = _facing(low - [0, 0, clear[0, 1]], high, b, a, 0.0)
     if not len(a) or not len(b):
@@ -135,6 +136,8 @@ def _across(
     inside = (low[p, :2] < high[q, :2]).all(-1) & (low[q, :2] < high[p, :2]).all(-1) & (group[p] < group[q])
     room = low[q, 2] - high[p, 2]
     inside &= (room > -1e-6) & (room <= clear[group[p], group[q]])
+    if not inside.any():
+        return []
     p, q = p[inside], q[inside]
     code = group[p] * len(unit.bases) + group[q]
     order = np.argsort(code, kind="stable")

@@ -11,7 +11,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from foldfab.folding.mechanism import REMEMBERED, directions, joined, start, tilts, to_the_right
+from foldfab.folding.mechanism import REMEMBERED, directions, joined, start, tilts
 from foldfab.folding.model import Chain, Shape, Thickness
 from foldfab.geometry.arrays import Array
 from foldfab.geometry.boxes import Boxes, stacked
@@ -58,9 +58,9 @@ def base_boxes(base: BasePatch, thickness: Thickness) -> Boxes:
 def moving_boxes(chain: Chain, thickness: Thickness, progress: Array) -> Boxes:
     """Slabs and knuckles (k, 2 m - 1) of a chain at each progress (k,), relative to the anchor's open position."""
     spans = (tuple(chain.span.tolist()), *map(tuple, chain.hinge_spans[1:-1].tolist()))
-    shape, when = to_the_right(chain.shape), np.asarray(progress, dtype=np.float64).tobytes()
-    made = _moving(shape, chain.panel, thickness.gap, spans, when)
-    if shape is not chain.shape:
+    when = np.asarray(progress, dtype=np.float64).tobytes()
+    made = _moving(chain.to_the_right, chain.panel, thickness.gap, spans, when)
+    if chain.turn < 0:
         made = Boxes(made.center * _MIRRORED_PLACE, made.axes * _MIRRORED_AXES, made.half)
     return Boxes(chain.root + made.center @ chain.basis, made.axes @ chain.basis, made.half)
 

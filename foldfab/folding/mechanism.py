@@ -91,12 +91,12 @@ def peak(chain: Chain) -> tuple[float, float]:
 
     The rise is about N_h (K + g)²/(2 a) · N_h/(N_h + 1) for an upright accordion; 0 where there is none.
     """
-    return _peak(to_the_right(chain.shape)) if chain.shape.comes_down else (0.0, 0.0)
+    return _peak(chain.to_the_right) if chain.shape.comes_down else (0.0, 0.0)
 
 
 def descent(chain: Chain) -> tuple[Array, Array, int]:
     """Progress (n,) and height over the open posture (n,) of the far end along the whole fold, and the snap's place."""
-    return _descent(to_the_right(chain.shape))
+    return _descent(chain.to_the_right)
 
 
 def turn(chain: Chain) -> float | None:
@@ -109,33 +109,26 @@ def turn(chain: Chain) -> float | None:
 
 def ends(chain: Chain) -> Array:
     """(3,) how far the last axis comes from open to folded, mm."""
-    first, last = _seen(chain.shape, _ends(to_the_right(chain.shape)))
+    first, last = _far_axis(chain)
     way: Array = (last - first) @ chain.plane
     return way
 
 
 def start(chain: Chain) -> Array:
     """(3,) where the last axis stands open, from the root, mm."""
-    place: Array = _seen(chain.shape, _ends(to_the_right(chain.shape)))[0] @ chain.plane
+    place: Array = _far_axis(chain)[0] @ chain.plane
     return place
 
 
 def open_height(chain: Chain) -> float:
     """How high the last axis stands above the root in the open posture, mm."""
-    return float(_ends(to_the_right(chain.shape))[0, 1])
+    return float(_ends(chain.to_the_right)[0, 1])
 
 
-def to_the_right(shape: Shape) -> Shape:
-    """A shape, or the mirror image of one that folds to the left: both move alike, and one table does for both."""
-    if shape.turn > 0:
-        return shape
-    offsets = tuple(-offset for offset in shape.offsets)
-    return Shape(-shape.lean, -shape.turn, shape.lengths, offsets, shape.comes_down)
-
-
-def _seen(shape: Shape, places: Array) -> Array:
-    """Places (…, 2) of a chain that folds to the right, as those of the shape that it was made from."""
-    return places if shape.turn > 0 else places * _MIRROR
+def _far_axis(chain: Chain) -> Array:
+    """(2, 2) where the last axis stands open and folded, in the plane of the chain."""
+    places = _ends(chain.to_the_right)
+    return places if chain.turn > 0 else places * _MIRROR
 
 
 @lru_cache(REMEMBERED)

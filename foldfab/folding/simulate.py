@@ -40,7 +40,8 @@ def clashes(
     They are patch and patch, patch and something around, or what hangs on two bases. `number` gives the number of every
     base.
     """
-    picked = np.unique(np.append(np.arange(0, len(motion.samples), STRIDE), len(motion.samples) - 1))
+    last = len(motion.samples) - 1
+    picked = np.append(np.arange(0, last, STRIDE), last)
     own_plates = _own_plates(number, chains, around)
     met: dict[tuple[str, str], float] = {}
     for start in range(0, max(len(picked) - 1, 1), SCENE):

@@ -11,15 +11,20 @@ from functools import lru_cache
 
 import numpy as np
 
-from foldfab.folding.mechanism import REMEMBERED, joints, start, tilts
+from foldfab.folding.mechanism import REMEMBERED, directions, joined, start, tilts
 from foldfab.folding.model import Chain, Shape, Thickness
 from foldfab.geometry.arrays import Array
 from foldfab.geometry.boxes import Boxes, stacked
-from foldfab.geometry.rotation import cosine, sine
 from foldfab.scaffold.model import BasePatch
 
 RIM = 0.4
 """How far plates reach beyond the feet on them, mm."""
+OPEN_AND_FOLDED = np.array([0.0, 1.0])
+"""Fold progress of what does not fold now."""
+_MIRRORED_PLACE = np.array([-1.0, 1.0, 1.0])
+"""What turns places of a chain that folds to the right into those of one that folds to the left."""
+_MIRRORED_AXES = np.array([[1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [-1.0, 1.0, 1.0]])
+"""The same for the axes of its boxes, which tilt the other way."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,8 +57,11 @@ def base_boxes(base: BasePatch, thickness: Thickness) -> Boxes:
 
 def moving_boxes(chain: Chain, thickness: Thickness, progress: Array) -> Boxes:
     """Slabs and knuckles (k, 2 m - 1) of a chain at each progress (k,), relative to the anchor's open position."""
-    spans = tuple(map(tuple, np.vstack([chain.span, chain.hinge_spans[1:-1]]).tolist()))
-    made = _moving(chain.shape, chain.panel, thickness.gap, spans, np.asarray(progress, dtype=np.float64).tobytes())
+    spans = (tuple(chain.span.tolist()), *map(tuple, chain.hinge_spans[1:-1].tolist()))
+    when = np.asarray(progress, dtype=np.float64).tobytes()
+    made = _moving(chain.to_the_right, chain.panel, thickness.gap, spans, when)
+    if chain.turn < 0:
+        made = Boxes(made.center * _MIRRORED_PLACE, made.axes * _MIRRORED_AXES, made.half)
     return Boxes(chain.root + made.center @ chain.basis, made.axes @ chain.basis, made.half)
 
 
@@ -64,13 +72,12 @@ def _moving(shape: Shape, panel: float, gap: float, spans: tuple[tuple[float, fl
     `spans` holds the extent of the panels and of each inserted hinge along the hinge direction.
     """
     angles = tilts(shape, np.frombuffer(progress))
-    axes_flat = joints(shape, angles)
+    normal, length = directions(angles)
+    axes_flat = joined(shape, normal, length)
     count = len(shape.lengths)
     axes = np.zeros((*angles.shape, 3, 3))
-    axes[..., 0, 0] = axes[..., 2, 2] = cosine(angles)
+    axes[..., 0, ::2], axes[..., 2, ::2] = normal, length
     axes[..., 1, 1] = 1.0
-    axes[..., 2, 0] = sine(angles)
-    axes[..., 0, 2] = -axes[..., 2, 0]
     low, high = np.full(count, gap / 2), np.array(shape.lengths) - gap / 2
     low[0], high[-1] = 0.0, shape.lengths[-1]
     span = np.array(spans)
@@ -93,8 +100,11 @@ def _moving(shape: Shape, panel: float, gap: float, spans: tuple[tuple[float, fl
 
 
 def resting_boxes(chain: Chain, thickness: Thickness, progress: float) -> Boxes:
-    """Slabs, knuckles and anchor foot (n,) of a chain at rest, at fold progress 0 or 1."""
-    return stacked([moving_boxes(chain, thickness, np.array([progress]))[0], anchor_feet(chain, thickness)])
+    """Slabs, knuckles and anchor foot (n,) of a chain that stands still at some fold progress."""
+    # What stands open in one scene lies folded in another.
+    is_end = progress in (0.0, 1.0)
+    when, frame = (OPEN_AND_FOLDED, int(progress)) if is_end else (np.array([progress]), 0)
+    return stacked([moving_boxes(chain, thickness, when)[frame], anchor_feet(chain, thickness)])
 
 
 def swept_boxes(chain: Chain, thickness: Thickness, progress: Array, near: Array, far: Array | None) -> Boxes:

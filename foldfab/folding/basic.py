@@ -8,7 +8,9 @@ Costs are eq. 3, weighted by the importance λ of eq. 1.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -60,6 +62,7 @@ def variants(site: Site, options: FoldOptions, thickness: Thickness, *, may_slan
     return tuple(v for v in found if span is not None and _lengths(site, v, thickness.of(site.panel)) is not None)
 
 
+@cache
 def windows(steps: int) -> tuple[tuple[int, int], ...]:
     """All windows of N_s cutting steps, the whole patch first, then by size and place."""
     found = [(a, b) for a in range(steps) for b in range(a + 1, steps + 1)]
@@ -86,25 +89,34 @@ def window_span(site: Site, window: tuple[int, int], steps: int, thickness: Thic
     return np.array([middle - thickness.hinge_width / 2, middle + thickness.hinge_width / 2])
 
 
-def too_narrow(site: Site, many: tuple[tuple[int, int], ...], steps: int, thickness: Thickness) -> Bools:
-    """Which windows (n,) are too narrow for a hinge; the whole patch never is."""
-    least, edges = thickness.of(site.panel).hinge_width, [_extent(site, w, steps, thickness) for w in many]
-    return np.array([high - low < least and w != (0, steps) for w, (low, high) in zip(many, edges, strict=True)])
+def too_narrow(
+    sites: Sequence[Site], many: tuple[tuple[int, int], ...], steps: int, thickness: Thickness
+) -> Bools:  # fmt: skip
+    """Which windows of which patches (sites, windows) are too narrow for a hinge; the whole patch never is."""
+    least = np.array([thickness.of(site.panel).hinge_width for site in sites])
+    span = np.array([site.span for site in sites]).reshape(-1, 2)
+    width = np.array([site.patch.width for site in sites]).reshape(-1, 1)
+    first, last = np.array(many).T
+    start = width * (first / steps - 0.5) + np.where(first > 0, thickness.gap / 2, 0.0)
+    end = width * (last / steps - 0.5) - np.where(last < steps, thickness.gap / 2, 0.0)
+    found: Bools = np.minimum(end, span[:, 1:]) - np.maximum(start, span[:, :1]) < least[:, None]
+    return found & (np.array(many) != (0, steps)).any(1)
 
 
 def chain(site: Site, variant: Variant, span: Array, thickness: Thickness) -> Chain | None:
     """The thick chain of a variant with the given extent, or None where its panels would be too short."""
     thickness = thickness.of(site.panel + variant.extra)
     lengths = _lengths(site, variant, thickness)
-    if lengths is None or float(np.ptp(span)) < thickness.hinge_width - 1e-9:
+    if lengths is None or float(span[1] - span[0]) < thickness.hinge_width - 1e-9:
         return None
-    turn = np.pi / 2 if variant.side == "r" else -np.pi / 2
-    signs = -np.sign(turn) * np.where(np.arange(variant.hinges) % 2 == 0, 1.0, -1.0)
-    offsets = np.concatenate([[0.0], signs * thickness.axis_offset, [0.0]])
+    turn = math.pi / 2 if variant.side == "r" else -math.pi / 2
+    first = -math.copysign(thickness.axis_offset, turn)
+    offsets = np.array([0.0, *(first if i % 2 == 0 else -first for i in range(variant.hinges)), 0.0])
     rise = thickness.axis_height + variant.pads[0]
     root = site.foot + rise * (site.rise + math.tan(site.lean) * site.across)
-    ends = [_on(span, held, thickness) for held in site.held]
-    hinge_spans = np.array([ends[0], *([span] * variant.hinges), ends[1]])
+    start, end = span.tolist()
+    ends = [_on(start, end, held, thickness) for held in site.held]
+    hinge_spans = np.array([ends[0], *([(start, end)] * variant.hinges), ends[1]])
     return Chain(
         site.patch.name, site.anchor, site.far, variant.mechanism, root, site.across, site.along, site.rise, site.lean,
         turn, lengths, offsets, span, hinge_spans, variant.pads, thickness.panel,
@@ -146,11 +158,10 @@ def _lengths(site: Site, variant: Variant, thickness: Thickness) -> Array | None
     return None if is_short else np.array(lengths)
 
 
-def _on(span: Array, held: tuple[float, float], thickness: Thickness) -> Array:
+def _on(start: float, end: float, held: tuple[float, float], thickness: Thickness) -> tuple[float, float]:
     """The part of a span that lies over its base, at least as wide as a hinge and within the span."""
-    start, end = span.tolist()
     low, high, half = max(start, held[0]), min(end, held[1]), thickness.hinge_width / 2
     if high - low >= 2 * half:
-        return np.array([low, high])
+        return low, high
     middle = min(max((low + high) / 2, start + half), end - half)
-    return np.array([middle - half, middle + half])
+    return middle - half, middle + half

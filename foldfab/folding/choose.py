@@ -3,24 +3,25 @@
 All options of one patch form a clique, so a maximum-weight independent set of the conflict graph with weights
 max cost - cost + 1 takes exactly one option of each patch; it is found here directly as the cheapest such choice.
 
-First an option goes where another one of its group is no dearer and excludes no more (dominance); what is left falls
-into groups that have no conflicts with each other, and each of these is solved by depth-first branch and bound: the
-group with the fewest options left is branched on first, options cheapest first, and a branch is cut where the cheapest
-options left in each group cannot beat the best choice known. Where that takes more than `LIMIT` branches the best
+Where the cheapest options of all groups go together, they are the choice. Else an option goes first where another one
+of its group is no dearer and excludes no more (dominance); what is left falls into groups that have no conflicts with
+each other, and each of these is solved by depth-first branch and bound: the group with the fewest options left is
+branched on first, options cheapest first, and a branch is cut where the cheapest options left in each group cannot beat
+the best choice known. Where that takes more than `LIMIT` branches the best
 choice so far is handed to CP-SAT, which proves or betters it. Milliseconds on most furniture, exponential in the worst
 case. Options of the same cost are taken in the order given.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
-import networkx as nx
 import numpy as np
 
 from foldfab.folding.eliminate import eliminated
 from foldfab.folding.exact import proven
-from foldfab.geometry.arrays import Array, Bools
+from foldfab.geometry.arrays import Array, Bools, Indices
 
 EPSILON = 1e-12
 """A choice must be cheaper by more than this to be better."""
@@ -56,8 +57,11 @@ def cheapest(
         gaps: gets by how much the choice may be dearer than the cheapest one, where the work did not suffice to tell.
         tangled: gets the groups that plain branch and bound gave up on, and says on which it need not be tried again.
     """
-    if not conflicts and not forbidden:
-        return tuple(int(np.argmin(c)) for c in costs) if all(np.isfinite(c.min()) for c in costs) else None
+    least = tuple(int(c.argmin()) for c in costs)
+    if not all(math.isfinite(c[i]) for c, i in zip(costs, least, strict=True)):
+        return None
+    if _go_together(least, conflicts, forbidden):
+        return least
     table = _by_group(len(costs), conflicts)
     held = _held(len(costs), forbidden)
     alive = [_undominated(costs[g], table[g], held[g]) for g in range(len(costs))]
@@ -76,6 +80,15 @@ def cheapest(
             return None
         taken.update(best)
     return tuple(taken[g] for g in range(len(costs)))
+
+
+def _go_together(
+    picked: tuple[int, ...], conflicts: Mapping[tuple[int, int], Bools], forbidden: frozenset[Combination]
+) -> bool:
+    """Whether no two options of a choice exclude each other, and no combination of them is forbidden."""
+    return not any(table[picked[g], picked[h]] for (g, h), table in conflicts.items()) and not any(
+        all(picked[g] == option for g, option in combination) for combination in forbidden
+    )
 
 
 def _by_group(count: int, conflicts: Mapping[tuple[int, int], Bools]) -> Table:
@@ -116,25 +129,36 @@ def _undominated(price: Array, conflicts: Mapping[int, Bools], held: list[int]) 
 
 def _dominated(excludes: Bools, free: Bools) -> Bools:
     """Which options (n,), cheapest first, one before them dominates: it is free, and excludes (n, m) no more."""
-    bits = np.packbits(excludes, axis=1)
-    found = np.zeros(len(bits), dtype=bool)
-    for i in np.nonzero(free)[0].tolist():
-        # What is dominated dominates nothing that its own dominator does not.
-        if not found[i]:
-            found[i + 1 :] |= ~(bits[i] & ~bits[i + 1 :]).any(1)
+    # What is dominated dominates nothing that its own dominator does not.
+    dominators: list[int] = []
+    found = np.zeros(len(excludes), dtype=bool)
+    for i, (own, is_free) in enumerate(zip(_sets(excludes), free.tolist(), strict=True)):
+        found[i] = any(not other & ~own for other in dominators)
+        if is_free and not found[i]:
+            dominators.append(own)
     return found
 
 
 def _islands(alive: list[Bools], table: Table, forbidden: frozenset[Combination]) -> list[list[int]]:
     """Sets of groups without a conflict between them."""
-    graph: nx.Graph[int] = nx.Graph()
-    graph.add_nodes_from(range(len(alive)))
+    beside: list[set[int]] = [set() for _ in alive]
     for g, row in enumerate(table):
-        own = np.nonzero(alive[g])[0]
-        graph.add_edges_from((g, h) for h, m in row.items() if g < h and m[own][:, alive[h]].any())
+        for h, excluded in row.items():
+            if g < h and (excluded[alive[g]] & alive[h]).any():
+                beside[g].add(h)
+                beside[h].add(g)
     for combination in forbidden:
-        nx.add_path(graph, [g for g, _ in combination])
-    return sorted(sorted(c) for c in nx.connected_components(graph))
+        for g, _ in combination:
+            beside[g] |= {h for h, _ in combination}
+    found, rest = [], set(range(len(alive)))
+    while rest:
+        island, fresh = set[int](), {min(rest)}
+        while fresh:
+            island |= fresh
+            fresh = set().union(*(beside[g] for g in fresh)) - island
+        rest -= island
+        found.append(sorted(island))
+    return found
 
 
 def _solved(
@@ -147,33 +171,53 @@ def _solved(
         found = eliminated(alive, costs, table)
         if found is not None:
             return found, 0.0
-    search = _Search(costs, table, own, SHORT if tuple(alive) in tangled else LIMIT)
+    best: dict[int, int] | None = None
     if len(groups) <= WIDEST:
-        search.branch(dict(alive), {}, 0.0)
+        search = _Search(alive, costs, table, own, SHORT if tuple(alive) in tangled else LIMIT)
+        best = search.found()
         if search.left >= 0:
-            return search.best, 0.0
+            return best, 0.0
         tangled.add(tuple(alive))
-    return proven(alive, costs, table, sorted(own), search.best)
+    return proven(alive, costs, table, sorted(own), best)
 
 
 class _Search:
-    """State of one branch and bound."""
+    """State of one branch and bound.
 
-    def __init__(self, costs: list[Array], table: Table, forbidden: list[Combination], limit: int) -> None:
-        self.costs = costs
-        self.table = table
+    Sets of options of a group are the bits of a number, the lowest one for the cheapest option.
+    """
+
+    def __init__(
+        self, alive: Mapping[int, Bools], costs: list[Array], table: Table, forbidden: list[Combination], limit: int
+    ) -> None:
+        self.options = {g: _cheapest_first(left, costs[g]) for g, left in alive.items()}
+        """By group, its options, cheapest first; all else here goes by their places in it."""
+        self.prices = {g: costs[g][own].tolist() for g, own in self.options.items()}
+        self.excluded = {
+            g: {h: _sets(m[np.ix_(own, self.options[h])]) for h, m in table[g].items() if h in self.options}
+            for g, own in self.options.items()
+        }
+        """By group and other group, for each option of the one which options of the other it excludes."""
+        place = {g: {int(o): i for i, o in enumerate(own)} for g, own in self.options.items()}
         self.forbidden: dict[tuple[int, int], list[Combination]] = {}
-        """By (group, option), the forbidden combinations that it belongs to."""
+        """By group and option, the forbidden combinations that it belongs to."""
         for combination in sorted(forbidden):
-            for place in combination:
-                self.forbidden.setdefault(place, []).append(combination)
+            if all(option in place[g] for g, option in combination):
+                placed = tuple((g, place[g][option]) for g, option in combination)
+                for member in placed:
+                    self.forbidden.setdefault(member, []).append(placed)
         self.left = limit
         self.best: dict[int, int] | None = None
         self.bound = np.inf
 
-    def branch(self, alive: dict[int, Bools], taken: dict[int, int], spent: float) -> None:
+    def found(self) -> dict[int, int] | None:
+        """The cheapest option of each group, as far as the limit goes."""
+        self._branch({g: (1 << len(own)) - 1 for g, own in self.options.items()}, {}, 0.0)
+        return {g: int(self.options[g][i]) for g, i in self.best.items()} if self.best is not None else None
+
+    def _branch(self, alive: dict[int, int], taken: dict[int, int], spent: float) -> None:
         """Looks at all completions of the options `taken`, given the options still `alive` in the other groups."""
-        least = {g: float(np.where(left, self.costs[g], np.inf).min()) for g, left in alive.items()}
+        least = {g: self.prices[g][_lowest(left)] for g, left in alive.items()}
         total = sum(least.values())
         self.left -= 1
         if spent + total >= self.bound - EPSILON or self.left < 0:
@@ -181,22 +225,40 @@ class _Search:
         if not alive:
             self.best, self.bound = taken, spent
             return
-        group = min(alive, key=lambda g: (int(alive[g].sum()), g))
-        order = np.argsort(np.where(alive[group], self.costs[group], np.inf), kind="stable")
-        for option in order[: int(alive[group].sum())]:
-            if spent + float(self.costs[group][option]) + total - least[group] >= self.bound - EPSILON:
+        group = min(alive, key=lambda g: (alive[g].bit_count(), g))
+        left = alive[group]
+        while left:
+            option = _lowest(left)
+            left &= left - 1
+            if spent + self.prices[group][option] + total - least[group] >= self.bound - EPSILON:
                 return
-            self._descend(alive, taken, spent, group, int(option))
+            self._descend(alive, taken, spent, group, option)
 
-    def _descend(self, alive: dict[int, Bools], taken: dict[int, int], spent: float, group: int, option: int) -> None:
+    def _descend(self, alive: dict[int, int], taken: dict[int, int], spent: float, group: int, option: int) -> None:
         now = {**taken, group: option}
         if any(all(now.get(g) == o for g, o in others) for others in self.forbidden.get((group, option), ())):
             return
         left = {}
         for other, options in alive.items():
             if other != group:
-                table = self.table[group].get(other)
-                left[other] = options if table is None else options & ~table[option]
-                if not left[other].any():
+                sets = self.excluded[group].get(other)
+                left[other] = options if sets is None else options & ~sets[option]
+                if not left[other]:
                     return
-        self.branch(left, now, spent + float(self.costs[group][option]))
+        self._branch(left, now, spent + self.prices[group][option])
+
+
+def _cheapest_first(alive: Bools, cost: Array) -> Indices:
+    """The options that are alive, cheapest first; those of the same cost in the order given."""
+    options = np.nonzero(alive)[0]
+    return options[np.argsort(cost[options], kind="stable")]
+
+
+def _sets(rows: Bools) -> list[int]:
+    """For each row of Booleans (n, m), a number whose bits they are."""
+    return [int.from_bytes(row.tobytes(), "little") for row in np.packbits(rows, axis=1, bitorder="little")]
+
+
+def _lowest(options: int) -> int:
+    """The place of the lowest bit."""
+    return (options & -options).bit_length() - 1

@@ -11,13 +11,14 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
 from foldfab.folding.problem import Problem
 from foldfab.folding.repertoire import Lane, Repertoire, cuts_of, lane, regions, resting, swept
-from foldfab.folding.space import Batch, conflicts
-from foldfab.geometry.arrays import Array, Bools
+from foldfab.folding.space import Batch, conflicts, meetings
+from foldfab.geometry.arrays import Array, Bools, Indices
 
 SAME_PLACE = 0.05
 """Two slanted chains drag their upper base alike where the ends differ by less, mm."""
@@ -66,10 +67,13 @@ def _regions_met(
     return met | conflicts(new, regions(problem, own, known), cuts, same | apart) if known else met
 
 
+@cache
 def windows_table(windows: tuple[tuple[int, int], ...], steps: int) -> Array:
     """(windows, N_s) 1 where a window holds a piece."""
     place = np.arange(steps)
-    return np.array([(place >= a) & (place < b) for a, b in windows], dtype=np.float32)
+    found = np.array([(place >= a) & (place < b) for a, b in windows], dtype=np.float32)
+    found.setflags(write=False)
+    return found
 
 
 def table(
@@ -145,14 +149,48 @@ def _beside(problem: Problem, own: Repertoire, many: list[Lane], moving: list[La
 
 
 def _never_compared(own: Repertoire, fresh: list[Lane]) -> tuple[Bools, Bools]:
-    """(lanes, lanes) the lanes of one patch; and those and, of two fresh lanes, the second with the first."""
+    """(lanes, lanes) those of one patch and those that drag bases along different ways, which never go together; and
+    these and, of two fresh lanes, the second with the first.
+    """
     patches = {p: i for i, p in enumerate(own.unit.patches)}
     patch = np.array([patches[x.patch] for x in own.lanes])
+    way = _ways(own)
     is_fresh = np.zeros(len(own.lanes), dtype=bool)
     is_fresh[[x.number for x in fresh]] = True
     number = np.arange(len(own.lanes))
-    same: Bools = patch[:, None] == patch
+    same: Bools = (patch[:, None] == patch) | (way[:, None] != way)
     return same, same | (is_fresh[:, None] & is_fresh & (number[:, None] >= number))
+
+
+def _ways(own: Repertoire) -> Indices:
+    """(lanes,) a number for each way in which lanes drag the bases of their unit, 0 for those that drag none."""
+    if all(x.drag is None for x in own.lanes):
+        return np.zeros(len(own.lanes), dtype=np.int64)
+    # Only a unit of two bases that all its patches join has lanes that drag any (section 5.3).
+    found: list[Array] = []
+    numbers = []
+    for x in own.lanes:
+        alike = (i for i, way in enumerate(found) if np.abs(x.way - way).max() < SAME_PLACE)
+        number = next(alike, len(found)) if x.drag is not None else -1
+        if number == len(found):
+            found.append(x.way)
+        numbers.append(number + 1)
+    return np.array(numbers)
+
+
+def meet_across(problem: Problem, own: Repertoire, many: list[Lane], others: list[Lane]) -> set[tuple[int, int]]:
+    """Which of some lanes meet which others, by number, of those that drag bases along different ways.
+
+    They never go together, so this is no part of the conflict graph; it tells why a patch does not fold by one of them.
+    """
+    found: set[tuple[int, int]] = set()
+    way = _ways(own)
+    for section in range(own.nominal.sections) if way.any() else ():
+        a, b = swept(problem, own, many, section), swept(problem, own, others, section)
+        if a is not None and b is not None:
+            for _, p, q in meetings(a, b, way[:, None] == way):
+                found.update(zip(a.lane[p].tolist(), b.lane[q].tolist(), strict=True))
+    return found
 
 
 def _learn(own: Repertoire, met: Mapping[tuple[int, int], Bools]) -> None:

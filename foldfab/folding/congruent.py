@@ -11,14 +11,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from foldfab.folding import anatomy
 from foldfab.folding.nominal import Nominal
 from foldfab.folding.outline import leaves_outline
 from foldfab.folding.problem import Problem
 from foldfab.folding.repertoire import Lane, Repertoire, made_from_scratch
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Array
-from foldfab.geometry.boxes import Boxes, bounds
+from foldfab.geometry.boxes import Boxes
 
 DIGITS = 5
 """To how many digits of mm two units agree to be copies."""
@@ -54,10 +53,7 @@ def pose(problem: Problem, unit: Unit) -> Pose:
     """What a unit looks like, wherever it stands."""
     sites = [problem.sites[p] for p in unit.patches]
     origin = np.min([s.foot for s in sites], axis=0)
-    plates = {b: bounds(anatomy.base_boxes(problem.scaffold.base(b), problem.thickness)) for b in unit.bases}
-    corners = {
-        b: _rounded(np.concatenate([low.min(0), high.max(0)]) - np.tile(origin, 2)) for b, (low, high) in plates.items()
-    }
+    corners = {b: _rounded(np.concatenate(problem.plates[b]) - np.tile(origin, 2)) for b in unit.bases}
     bases = tuple(sorted(unit.bases, key=lambda b: (corners[b], unit.bases.index(b))))
     place: dict[str | None, int] = {b: i for i, b in enumerate(bases)}
     seen = {}
@@ -102,6 +98,7 @@ def _copied_lane(problem: Problem, x: Lane, offset: Array, base: dict[str | None
     return replace(
         x, patch=patch, chain=chain, cuts=x.cuts + float(offset @ c.along), beside=beside,
         is_out=leaves_outline(problem, chain, beside), low=x.low + offset, high=x.high + offset,
+        reach=(x.reach[0] + offset, x.reach[1] + offset),
     )  # fmt: skip
 
 

@@ -90,6 +90,30 @@ class Graph:
                     best = picked
         return best
 
+    def promising(self, prices: Mapping[str, float]) -> list[str]:
+        """The patches with lanes not made yet that could be part of a choice cheaper than all known ones.
+
+        A promise, a lane at its patch's price of `prices` that conflicts with nothing, takes the place of the patch's
+        deletion: where the cheapest choice takes no promise, no lane that is not made yet can better it.
+        """
+        last = {g: len(self.costs[g]) - 1 for g, p in enumerate(self.patches) if p in prices}
+        costs = [self._undragged(g) for g in range(len(self.patches))]
+        for g, end in last.items():
+            costs[g][end] = prices[self.patches[g]]
+        tables = {pair: _without_last(table, pair, last) for pair, table in self.tables.items()}
+        forbidden = frozenset(c for c in self.forbidden if not any(last.get(g) == option for g, option in c))
+        gaps: list[float] = []
+        picked = cheapest(costs, tables, forbidden, gaps)
+        if picked is None or gaps:
+            return [self.patches[g] for g in last]
+        return [self.patches[g] for g, end in last.items() if picked[g] == end]
+
+    def _undragged(self, group: int) -> Array:
+        """What the options of a patch cost beside lanes not made yet: those come straight down, and none drags along."""
+        options = self.options[group]
+        drags = np.repeat([x.drag is not None for x in options.lanes], len(options.windows))
+        return np.where(np.append(drags, False), np.inf, self.costs[group])
+
     def _modes(self, lanes: list[set[int]]) -> list[list[Bools]]:
         """For each way to drag the bases, which options of each patch (n,) go along; deletion always does."""
         made = []
@@ -127,3 +151,13 @@ class Graph:
         if clash.holds_for == "this" or index == len(options.price) - 1:
             return [index]
         return options.like(index, wider=clash.holds_for == "wider windows")
+
+
+def _without_last(table: Bools, pair: tuple[int, int], last: Mapping[int, int]) -> Bools:
+    """A table of two groups in which the last options of some groups conflict with nothing."""
+    found = table.copy()
+    if pair[0] in last:
+        found[-1] = False
+    if pair[1] in last:
+        found[:, -1] = False
+    return found

@@ -28,6 +28,9 @@ TABLE = 385
 REMEMBERED = 4096
 """Shapes whose tables are kept: furniture is made of a few, over and over again."""
 
+_MIRROR = np.array([-1.0, 1.0])
+"""What turns places of a chain that folds to the right into those of one that folds to the left."""
+
 
 def tilts(chain: Chain | Shape, progress: Array) -> Array:
     """Tilts (k, m) of the panels at each fold progress (k,), radians."""
@@ -41,12 +44,25 @@ def tilts(chain: Chain | Shape, progress: Array) -> Array:
 
 def joints(chain: Chain | Shape, angles: Array) -> Array:
     """Hinge axes (k, m + 1, 2) in the plane of the chain relative to the root, for tilts (k, m); a tip last."""
-    normal, length = _directions(angles)
+    return joined(chain, *directions(angles))
+
+
+def joined(chain: Chain | Shape, normal: Array, length: Array) -> Array:
+    """The same for panels with these face normals and length directions (k, m, 2)."""
     offsets, lengths = np.asarray(chain.offsets), np.asarray(chain.lengths)
-    found = np.zeros((len(angles), len(lengths) + 1, 2))
+    found = np.zeros((len(normal), len(lengths) + 1, 2))
     steps = (offsets[1:] - offsets[:-1])[:, None] * normal + lengths[:, None] * length
     np.cumsum(steps, axis=1, out=found[:, 1:])
     return found
+
+
+def directions(angles: Array) -> tuple[Array, Array]:
+    """Face normals and length directions (k, m, 2) of panels with tilts (k, m), in the plane of the chain."""
+    normal, length = np.empty((*angles.shape, 2)), np.empty((*angles.shape, 2))
+    normal[..., 0] = length[..., 1] = cosine(angles)
+    length[..., 0] = sine(angles)
+    normal[..., 1] = -length[..., 0]
+    return normal, length
 
 
 def reach(chain: Chain | Shape, progress: Array) -> Array:
@@ -63,7 +79,7 @@ def frames(chain: Chain, progress: Array) -> tuple[Array, Array]:
         are the face normal, the hinge direction and the length direction.
     """
     angles = tilts(chain, progress)
-    normal, length = _directions(angles)
+    normal, length = directions(angles)
     flat = joints(chain, angles)[:, :-1] - chain.offsets[:-1, None] * normal
     plane = chain.plane
     along = np.broadcast_to(chain.along, (*angles.shape, 3))
@@ -75,12 +91,12 @@ def peak(chain: Chain) -> tuple[float, float]:
 
     The rise is about N_h (K + g)²/(2 a) · N_h/(N_h + 1) for an upright accordion; 0 where there is none.
     """
-    return _peak(chain.shape) if chain.shape.comes_down else (0.0, 0.0)
+    return _peak(chain.to_the_right) if chain.shape.comes_down else (0.0, 0.0)
 
 
 def descent(chain: Chain) -> tuple[Array, Array, int]:
     """Progress (n,) and height over the open posture (n,) of the far end along the whole fold, and the snap's place."""
-    return _descent(chain.shape)
+    return _descent(chain.to_the_right)
 
 
 def turn(chain: Chain) -> float | None:
@@ -93,15 +109,26 @@ def turn(chain: Chain) -> float | None:
 
 def ends(chain: Chain) -> Array:
     """(3,) how far the last axis comes from open to folded, mm."""
-    first, last = _ends(chain.shape)
+    first, last = _far_axis(chain)
     way: Array = (last - first) @ chain.plane
     return way
 
 
 def start(chain: Chain) -> Array:
     """(3,) where the last axis stands open, from the root, mm."""
-    place: Array = _ends(chain.shape)[0] @ chain.plane
+    place: Array = _far_axis(chain)[0] @ chain.plane
     return place
+
+
+def open_height(chain: Chain) -> float:
+    """How high the last axis stands above the root in the open posture, mm."""
+    return float(_ends(chain.to_the_right)[0, 1])
+
+
+def _far_axis(chain: Chain) -> Array:
+    """(2, 2) where the last axis stands open and folded, in the plane of the chain."""
+    places = _ends(chain.to_the_right)
+    return places if chain.turn > 0 else places * _MIRROR
 
 
 @lru_cache(REMEMBERED)
@@ -131,14 +158,6 @@ def _peak(shape: Shape) -> tuple[float, float]:
     height = reach(shape, s)[:, 1]
     top = int(np.argmax(height))
     return (float(height[top] - height[0]), float(s[top])) if top else (0.0, 0.0)
-
-
-def _directions(angles: Array) -> tuple[Array, Array]:
-    normal, length = np.empty((*angles.shape, 2)), np.empty((*angles.shape, 2))
-    normal[..., 0] = length[..., 1] = cosine(angles)
-    length[..., 0] = sine(angles)
-    normal[..., 1] = -length[..., 0]
-    return normal, length
 
 
 def _in_place(shape: Shape, s: Array) -> Array:

@@ -138,6 +138,12 @@ class Shape:
     """Whether its far end is a base that comes straight down."""
 
 
+def mirrored(shape: Shape) -> Shape:
+    """The shape of the chain that folds to the other side."""
+    offsets = tuple(-offset for offset in shape.offsets)
+    return Shape(-shape.lean, -shape.turn, shape.lengths, offsets, shape.comes_down)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Chain:
     """A patch as it folds: rigid panels in a row, from the base that carries it (the anchor) to its far end.
@@ -180,15 +186,18 @@ class Chain:
     """Stretches along `along` relative to `root` that its hinges leave free of knuckles, mm, in ascending order."""
     shape: Shape = field(init=False)
     """What its motion depends on."""
+    to_the_right: Shape = field(init=False)
+    """The same, or its mirror image where it folds to the left: both move alike, and one table does for both."""
     basis: Array = field(init=False)
     """(3, 3) rows across, along and rise."""
     plane: Array = field(init=False)
     """(2, 3) rows across and rise, in whose plane it moves."""
 
     def __post_init__(self) -> None:
-        for name in ("root", "across", "along", "rise"):
-            object.__setattr__(self, name, frozen(getattr(self, name), 3))
+        object.__setattr__(self, "root", frozen(self.root, 3))
         object.__setattr__(self, "basis", frozen([self.across, self.along, self.rise], 3, 3))
+        for name, row in zip(("across", "along", "rise"), self.basis, strict=True):
+            object.__setattr__(self, name, row)
         object.__setattr__(self, "plane", self.basis[::2])
         object.__setattr__(self, "lengths", frozen(self.lengths, -1))
         object.__setattr__(self, "offsets", frozen(self.offsets, len(self.lengths) + 1))
@@ -196,7 +205,9 @@ class Chain:
         object.__setattr__(self, "hinge_spans", frozen(self.hinge_spans, len(self.lengths) + 1, 2))
         comes_down = self.mechanism == "in-place" and self.far is not None
         lengths, offsets = tuple(self.lengths.tolist()), tuple(self.offsets.tolist())
-        object.__setattr__(self, "shape", Shape(float(self.lean), float(self.turn), lengths, offsets, comes_down))
+        shape = Shape(float(self.lean), float(self.turn), lengths, offsets, comes_down)
+        object.__setattr__(self, "shape", shape)
+        object.__setattr__(self, "to_the_right", shape if shape.turn > 0 else mirrored(shape))
 
     @property
     def panels(self) -> tuple[str, ...]:

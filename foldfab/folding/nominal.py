@@ -12,11 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from foldfab.folding import anatomy, press
+from foldfab.folding import press
 from foldfab.folding.problem import Problem, clear_height, clearances, held, levels
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Array, Bools
-from foldfab.geometry.boxes import bounds
 
 FRAMES = 17
 """Instants of each section at which clashes are looked for."""
@@ -57,9 +56,7 @@ def _least_stack(problem: Problem, unit: Unit, pair: tuple[str, str]) -> float:
 
 def _plates_apart(problem: Problem, unit: Unit) -> dict[tuple[str, str], float]:
     """By (lower, upper) base that lie over one another, the gap that remains between them."""
-    corners = {b: bounds(anatomy.base_boxes(problem.scaffold.base(b), problem.thickness)) for b in unit.bases}
-    low = np.array([c[0].min(0)[:2] for c in corners.values()])
-    high = np.array([c[1].max(0)[:2] for c in corners.values()])
+    low, high = (np.array([problem.plates[b][end][:2] for b in unit.bases]) for end in (0, 1))
     over: Bools = (np.maximum(low[:, None], low) < np.minimum(high[:, None], high)).all(-1)
     pairs = itertools.combinations(range(len(unit.bases)), 2)
     return {(unit.bases[i], unit.bases[j]): problem.thickness.gap for i, j in pairs if over[i, j]}

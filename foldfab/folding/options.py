@@ -66,32 +66,42 @@ class Options:
 
 def options_of(problem: Problem, found: Prospects, offset: Array) -> dict[str, Options]:
     """The options of every patch of a unit that has been carried by `offset` (3,) since the open posture, mm."""
-    steps = problem.options.shrink_steps
-    windows = basic.windows(steps)
-    inside = windows_table(windows, steps)
-    return {
-        patch: _options(problem, patch, lanes, found.blocked, windows, inside, offset)
-        for patch, lanes in found.lanes.items()
-    }
+    windows = basic.windows(problem.options.shrink_steps)
+    # Priced all together: there are few options of any one patch.
+    price, weight = _priced(problem, [x for many in found.lanes.values() for x in many], found.blocked, windows, offset)
+    made, start = {}, 0
+    for patch, lanes in found.lanes.items():
+        own = slice(start, start + len(lanes))
+        made[patch] = _options(problem, patch, lanes, price[own], weight[own], windows)
+        start = own.stop
+    return made
+
+
+def _priced(
+    problem: Problem, every: list[Lane], blocked: Mapping[int, Bools], windows: tuple[tuple[int, int], ...],
+    offset: Array,
+) -> tuple[Array, Array]:  # fmt: skip
+    """What each lane costs with each window (lanes, windows), and what that counts in the search."""
+    options, steps = problem.options, problem.options.shrink_steps
+    sites = [problem.sites[x.patch] for x in every]
+    kept = np.array([b - a for a, b in windows]) / steps
+    splits = options.alpha * np.array([x.variant.hinges for x in every], dtype=np.float64) / options.max_hinges
+    importance = np.array([site.importance for site in sites])
+    price = importance[:, None] * (splits[:, None] + (1 - options.alpha) * (1 - kept) ** 2)
+    taken = np.array([blocked[x.number] for x in every], dtype=np.float32).reshape(len(every), steps)
+    out = taken @ windows_table(windows, steps).T > 0
+    out |= basic.too_narrow(sites, windows, steps, problem.thickness)
+    extra = PREFERENCE * awkwardness(problem, every, offset)[:, None]
+    return price, np.where(out, np.inf, price + extra)
 
 
 def _options(
-    problem: Problem, patch: str, lanes: tuple[Lane, ...], blocked: Mapping[int, Bools],
-    windows: tuple[tuple[int, int], ...], inside: Array, offset: Array,
+    problem: Problem, patch: str, lanes: tuple[Lane, ...], price: Array, weight: Array,
+    windows: tuple[tuple[int, int], ...],
 ) -> Options:  # fmt: skip
-    site, options = problem.sites[patch], problem.options
-    kept = np.array([b - a for a, b in windows]) / options.shrink_steps
-    hinges = np.array([x.variant.hinges for x in lanes], dtype=np.float64)
-    splits = options.alpha * hinges / options.max_hinges
-    price = site.importance * (splits[:, None] + (1 - options.alpha) * (1 - kept) ** 2)
-    taken = np.array([blocked[x.number] for x in lanes], dtype=np.float32).reshape(len(lanes), inside.shape[1])
-    narrow = basic.too_narrow(site, windows, options.shrink_steps, problem.thickness)
-    out = (taken @ inside.T > 0) | narrow
-    extra = PREFERENCE * awkwardness(problem, lanes, offset)[:, None]
-    weight = np.where(out, np.inf, price + extra)
-    gone = site.importance * basic.cost(0, 0.0, options)
-    weights = np.append(weight.ravel(), DELETION + gone)
-    made = Options(patch, lanes, np.append(price.ravel(), gone), weights, windows)
+    gone = problem.sites[patch].importance * basic.cost(0, 0.0, problem.options)
+    weights = np.append(weight, DELETION + gone)
+    made = Options(patch, lanes, np.append(price, gone), weights, windows)
     weights[~_allowed(problem, made)] = np.inf
     return made
 

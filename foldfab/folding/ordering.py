@@ -1,7 +1,8 @@
 """The order in which the units fold: greedy with one-step look-ahead (section 5.5, figure 14).
 
 At each step the unit is taken that minimises C1 + C2: its own cost now, plus the costs of all the others if it were
-folded. Where no unit can fold, the remaining ones are merged into one and fold in place.
+folded; of units that count the same the lowest. Where no unit can fold, the remaining ones are merged into one and fold
+in place.
 
 What a unit can do alone bounds its cost from below. So only those others are solved anew in the look-ahead that would
 see the unit folded, and the look-ahead ends where no other unit can be better. With k units that see each other and n
@@ -39,8 +40,8 @@ from foldfab.geometry.boxes import near_pairs
 
 REFUSED = 1e3
 """What a unit that cannot fold counts in the look-ahead: more than any cost."""
-DIGITS = 9
-"""Outlooks that agree to this many digits are the same."""
+DIGITS = 5
+"""Outlooks that agree to this many digits are the same: preferences between options of equal cost count no more."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -61,6 +62,8 @@ class _State:
     """By unit, its cheapest choice without conflicts."""
     beside: Mapping[str, set[str]]
     """By unit, those whose folds reach into the space of its own."""
+    place: Mapping[str, int]
+    """By unit, how many have lower bases; what lies flat first is in the way of nothing above."""
     rest: dict[str, Unit]
     guess: dict[str, float] = field(default_factory=dict)
     """By remaining unit, what folding it now would count: exact, or at least not too much."""
@@ -81,7 +84,7 @@ def floors(problem: Problem) -> dict[str, Choice]:
 
 def greedy(problem: Problem, scene: Scene, floor: Mapping[str, Choice]) -> Ordered:
     """Folds all units of the open scene one after another; `floor` is the cheapest choice of each."""
-    state = _State(problem, scene, floor, _beside(problem), {u.name: u for u in problem.units})
+    state = _State(problem, scene, floor, _beside(problem), _places(problem), {u.name: u for u in problem.units})
     for unit in problem.units:
         _look_again(state, unit)
     folds: list[UnitFold] = []
@@ -187,27 +190,35 @@ def _beside(problem: Problem) -> dict[str, set[str]]:
     return found
 
 
+def _places(problem: Problem) -> dict[str, int]:
+    number = problem.tree.number
+    lowest_first = sorted(problem.units, key=lambda u: ([number[b] for b in u.bases], u.name))
+    return {unit.name: place for place, unit in enumerate(lowest_first)}
+
+
 def _best(state: _State) -> str | None:
-    """The unit with the least C1 + C2, by name where several have; None where no unit can fold."""
+    """The unit with the least C1 + C2, the lowest where several have; None where no unit can fold."""
     while True:
-        best: tuple[float, str] | None = None
+        best: tuple[float, int, str] | None = None
         does_hold = True
-        for hope, name in _hopes(state):
-            if best is not None and best <= (hope, name):
+        for hope in _hopes(state):
+            if best is not None and best <= hope:
                 break
+            name = hope[2]
             fold = _folded(state, name)
             does_hold = fold is not None
             if fold is None:
                 break
             change = round(_change(state, fold), DIGITS) if len(state.rest) > 1 else 0.0
-            best = min(best, (change, name)) if best is not None else (change, name)
+            found = (change, state.place[name], name)
+            best = min(best, found) if best is not None else found
         # Where what was guessed does not hold, the look-ahead begins anew; guesses only ever rise.
         if does_hold:
-            return best[1] if best is not None else None
+            return best[2] if best is not None else None
 
 
-def _hopes(state: _State) -> list[tuple[float, str]]:
-    """The units that may fold, each with how much their folding could at best save others; best first."""
+def _hopes(state: _State) -> list[tuple[float, int, str]]:
+    """The units that may fold, each with how much their folding could at best save others; best first, then lowest."""
     hopes = {name: 0.0 for name in state.rest if state.guess[name] < REFUSED}
     for name in state.rest:
         excess = state.guess[name] - state.floor[name].weight
@@ -218,7 +229,7 @@ def _hopes(state: _State) -> list[tuple[float, str]]:
         for other in helpers if excess > 0 else ():
             if other in hopes and other != name:
                 hopes[other] -= excess
-    return sorted((round(hope, DIGITS), name) for name, hope in hopes.items())
+    return sorted((round(hope, DIGITS), state.place[name], name) for name, hope in hopes.items())
 
 
 def _change(state: _State, fold: UnitFold) -> float:

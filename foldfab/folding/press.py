@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from foldfab.folding.mechanism import descent, peak, reach, turn
+from foldfab.folding.mechanism import descent, open_height, peak, reach, turn
 from foldfab.folding.model import Chain
 from foldfab.geometry.arrays import Array, Indices
 
@@ -163,7 +163,7 @@ def _section(i: int, levels: list[float], way: Mapping[str, float], held: list[C
     s = np.concatenate([at * climb, down])
     climb = np.concatenate([climb, 1 + (down - at) / crest if crest > 0 else np.full(len(down), np.inf)])
     height = reach(leader, s)[:, 1]
-    press = whole + height - reach(leader, np.zeros(1))[0, 1]
+    press = whole + height - open_height(leader)
     if crest > 0:
         shared = _shared_rise([r for r, _ in snaps], [play_limit(c, gap) for c in starting])
         press += (shared - rise) * np.where(climb < 1, climb**2 * (3 - 2 * climb), _fade(climb))
@@ -178,7 +178,7 @@ def _turns(leader: Chain, held: list[Chain], way: Mapping[str, float], at: float
         own = turn(chain)
         if own is not None and chain.far is not None:
             wanted = own + TURNED
-            drop = reach(chain, np.zeros(1))[0, 1] - reach(chain, wanted)[:, 1]
+            drop = open_height(chain) - reach(chain, wanted)[:, 1]
             later = way[leader.far or ""] - way[chain.far]
             places.append(wanted if chain is leader else follow_down(leader, later + drop))
     found = np.concatenate(places)
@@ -234,7 +234,7 @@ def _follow(
         found[is_own] = sections[own].progress
     found = np.where(index < own, 0.0, found)
     found[-1] = 1.0
-    return found, -drop - (reach(chain, found)[:, 1] - reach(chain, np.zeros(1))[0, 1])
+    return found, -drop - (reach(chain, found)[:, 1] - open_height(chain))
 
 
 def _is_twin(a: Chain, b: Chain) -> bool:
@@ -242,7 +242,7 @@ def _is_twin(a: Chain, b: Chain) -> bool:
     return (
         len(a.lengths) == len(b.lengths)
         and abs(abs(a.lean) - abs(b.lean)) < 1e-9
-        and bool(np.allclose(np.sort(a.lengths), np.sort(b.lengths), atol=1e-6, rtol=0))
+        and all(abs(x - y) <= 1e-6 for x, y in zip(sorted(a.shape.lengths), sorted(b.shape.lengths), strict=True))
     )
 
 

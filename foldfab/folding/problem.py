@@ -38,6 +38,8 @@ class Problem:
     """The recipe's parts, by name."""
     faces: Mapping[str, anatomy.Face]
     """By base, the faces of its plate."""
+    plates: Mapping[str, tuple[Array, Array]]
+    """By base, lower and upper corner (3,) of its plate, mm."""
     furniture: Boxes
     """(n,) the open furniture with thickness."""
     outline: tuple[Array, Array]
@@ -50,6 +52,8 @@ class Problem:
     """What the patches of each unit can do, by unit."""
     poses: dict[object, Any] = field(default_factory=dict)
     """The first unit of each kind, by what it looks like wherever it stands."""
+    least: dict[Unit, float] = field(default_factory=dict)
+    """What the cheapest choice of each unit counts, whatever stands around it."""
     solved: dict[object, Any] = field(default_factory=dict)
     """Solutions of units, by all that they depend on."""
     begun: dict[object, Any] = field(default_factory=dict)
@@ -71,7 +75,7 @@ class Problem:
 
 def without(problem: Problem, banned: frozenset[tuple[str, Variant]]) -> Problem:
     """The problem with these variants banned, and nothing remembered that they could have been part of."""
-    return replace(problem, banned=banned, repertoires={}, poses={}, solved={}, begun={}, hopeless={})
+    return replace(problem, banned=banned, repertoires={}, poses={}, least={}, solved={}, begun={}, hopeless={})
 
 
 def variants(problem: Problem, unit: Unit, patch: str) -> tuple[Variant, ...]:

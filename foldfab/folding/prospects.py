@@ -106,16 +106,17 @@ def _held_against(
     steps = problem.options.shrink_steps
     room: Room = {x.number: np.zeros(steps, dtype=bool) for x in many}
     met: dict[int, set[int]] = {x.number: set() for x in many}
-    if not many or not len(around.boxes):
+    close = _close(problem, around, many)
+    if not close:
         return room, met
     cuts = cuts_of(own)
-    for group in _alike(own, many):
+    for group in _alike(own, close):
         for section in range(own.nominal.sections):
             a = swept(problem, own, group, section)
             if a is None:
                 continue
             b = _carried(own, around, group[0], section)
-            pieces, lanes, boxes = blocked(a, cuts, b, lambda: _own_plates(problem, own, around))
+            pieces, lanes, boxes = blocked(a, cuts, b, lambda: _own_plates(problem, own.lanes, around))
             for number, box in zip(lanes.tolist(), boxes.tolist(), strict=True):
                 met[number].add(box)
             for x in group:
@@ -147,12 +148,22 @@ def _carried(own: Repertoire, around: Surroundings, lead: Lane, section: int) ->
     return around.moved[key]
 
 
-def _own_plates(problem: Problem, own: Repertoire, around: Surroundings) -> Bools:
+def _close(problem: Problem, around: Surroundings, many: list[Lane]) -> list[Lane]:
+    """The lanes that come near anything but the plates that their own hinges stand on; all others have room."""
+    if not many:
+        return []
+    near = ~_own_plates(problem, many, around)
+    low, high = (np.array([x.reach[end] for x in many])[:, around.group] for end in (0, 1))
+    for axis in range(3):
+        near &= (low[..., axis] <= around.corners[1][:, axis]) & (high[..., axis] >= around.corners[0][:, axis])
+    return [x for x, is_close in zip(many, near.any(1).tolist(), strict=True) if is_close]
+
+
+def _own_plates(problem: Problem, many: list[Lane], around: Surroundings) -> Bools:
     """(lanes, boxes) the plates that a lane's own hinges stand on; they are never in its way."""
     number = problem.tree.number
-    plate = np.array([s.base if s.state == "base" else -1 for s in around.solids])[around.owner]
-    own_bases = np.array([[number[x.chain.anchor], number[x.chain.far or x.chain.anchor]] for x in own.lanes])
-    found: Bools = (own_bases[:, :, None] == plate).any(1)
+    own_bases = np.array([[number[x.chain.anchor], number[x.chain.far or x.chain.anchor]] for x in many])
+    found: Bools = (own_bases[:, :, None] == around.plate).any(1)
     return found
 
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from foldfab.folding.basic import Option
+from foldfab.folding.conflict import meet_across
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import Prospects
 from foldfab.folding.repertoire import Lane, Repertoire
@@ -24,9 +25,9 @@ def reasons_of(problem: Problem, own: Repertoire, found: Prospects, chosen: Mapp
             continue
         told = []
         if option.variant is None or option.window != (0, problem.options.shrink_steps):
-            told.append(_narrowed(own, found, lanes, patch, option))
+            told.append(_narrowed(problem, own, found, lanes, patch, option))
         if option.variant is not None and option.variant.hinges:
-            told.append(_split(own, found, lanes, patch, option))
+            told.append(_split(problem, own, found, lanes, patch, option))
         reasons[patch] = "; ".join(dict.fromkeys(text for text in told if text))
     return reasons
 
@@ -51,12 +52,14 @@ def _lane(found: Prospects, patch: str, option: Option) -> Lane | None:
     return next((x for x in found.lanes[patch] if x.variant == option.variant), None)
 
 
-def _narrowed(own: Repertoire, found: Prospects, lanes: Mapping[str, Lane | None], patch: str, option: Option) -> str:
+def _narrowed(
+    problem: Problem, own: Repertoire, found: Prospects, lanes: Mapping[str, Lane | None], patch: str, option: Option
+) -> str:  # fmt: skip
     """What the part of the patch that is gone would meet."""
     lane = lanes[patch]
     if lane is None:
         met = {name for x in found.lanes[patch] for name in found.obstacles[x.number]}
-        met |= {q for x in found.lanes[patch] for q in _conflicting(own, x, lanes, range(len(x.cuts) - 1))}
+        met |= _met_by(problem, own, list(found.lanes[patch]), lanes)
         return _because(met, "it would meet")
     gone = [s for s in range(len(lane.cuts) - 1) if not option.window[0] <= s < option.window[1]]
     folding = _conflicting(own, lane, lanes, gone)
@@ -67,13 +70,23 @@ def _narrowed(own: Repertoire, found: Prospects, lanes: Mapping[str, Lane | None
     return "because there is no room for all of it"
 
 
-def _split(own: Repertoire, found: Prospects, lanes: Mapping[str, Lane | None], patch: str, option: Option) -> str:
+def _split(
+    problem: Problem, own: Repertoire, found: Prospects, lanes: Mapping[str, Lane | None], patch: str, option: Option
+) -> str:  # fmt: skip
     """What it would meet in one piece, or with fewer hinges."""
     assert option.variant is not None
     fewer = [x for x in found.lanes[patch] if x.variant.hinges < option.variant.hinges]
     met = {name for x in fewer if found.blocked[x.number].any() for name in found.obstacles[x.number]}
-    met |= {q for x in fewer for q in _conflicting(own, x, lanes, range(len(x.cuts) - 1))} - {patch}
+    met |= _met_by(problem, own, fewer, lanes)
     return _because(met, "with fewer hinges it would meet") if met else "to come straight down"
+
+
+def _met_by(problem: Problem, own: Repertoire, many: list[Lane], lanes: Mapping[str, Lane | None]) -> set[str]:
+    """The patches whose lanes meet any of some lanes of another patch, whether or not they could go together."""
+    others = [x for p, x in lanes.items() if x is not None and all(p != y.patch for y in many)]
+    met = {q for x in many for q in _conflicting(own, x, lanes, range(len(x.cuts) - 1))}
+    rest = [x for x in others if x.patch not in met]
+    return met | {own.lanes[b].patch for _, b in meet_across(problem, own, many, rest)}
 
 
 def _conflicting(own: Repertoire, lane: Lane, lanes: Mapping[str, Lane | None], pieces: range | list[int]) -> set[str]:

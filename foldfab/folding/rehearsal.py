@@ -30,8 +30,8 @@ def first_clash(problem: Problem, scene: Scene, folds: tuple[UnitFold, ...]) -> 
     """
     order = {patch: i for i, fold in enumerate(folds) for patch in fold.unit.patches}
     variants = {p: o.variant for fold in folds for p, o in fold.chosen.items() if o.variant is not None}
-    for fold in folds:
-        scene = shown(scene, fold.unit, fold.chains, is_folded=False)
+    patches = [patch for fold in folds for patch in fold.unit.patches]
+    scene = shown(scene, patches, [chain for fold in folds for chain in fold.chains], is_folded=False)
     for fold in folds:
         around = look(problem, scene, repertoire(problem, fold.unit))
         if around.key == fold.seen:

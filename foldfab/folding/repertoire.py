@@ -7,7 +7,8 @@ surroundings ask for them.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -67,6 +68,8 @@ class Lane:
     """(3,) lower corner of all that it sweeps and of its far base when folded."""
     high: Array
     """(3,) upper corner."""
+    reach: tuple[Array, Array]
+    """Lower and upper corners (b, 3) of all that it sweeps and half the gap around it, as seen from each base."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -162,7 +165,7 @@ def regions(problem: Problem, own: Repertoire, many: Iterable[Lane]) -> Batch:
     return joined(parts, -TOUCH)
 
 
-def awkwardness(problem: Problem, many: tuple[Lane, ...], offset: Array) -> Array:
+def awkwardness(problem: Problem, many: Sequence[Lane], offset: Array) -> Array:
     """(n,) how far lanes carry things out of the open furniture and how high their plinths are, relative to its size.
 
     `offset` (3,) is how far the unit has been carried since the open posture.
@@ -196,8 +199,9 @@ def _made(problem: Problem, own: Repertoire, site: Site, variant: Variant) -> La
     if not movers:
         return None
     own.movers.append(movers)
-    corners = [bounds(boxes) for boxes in movers.values()]
-    low, high = np.min([c[0].min((0, 1)) for c in corners], 0), np.max([c[1].max((0, 1)) for c in corners], 0)
+    corners = {section: bounds(boxes) for section, boxes in movers.items()}
+    low = np.array([low.min((0, 1)) for low, _ in corners.values()]).min(0)
+    high = np.array([high.max((0, 1)) for _, high in corners.values()]).max(0)
     middle, width, gap = float(site.foot @ site.along), site.patch.width, problem.thickness.gap
     cuts = middle - width / 2 + width * np.arange(steps + 1) / steps
     # Half the gap on either side belongs to the outermost pieces.
@@ -207,7 +211,7 @@ def _made(problem: Problem, own: Repertoire, site: Site, variant: Variant) -> La
     found = Lane(
         len(own.lanes), site.patch.name, variant, chain, _span(movers), ends(chain), peak(chain)[0],
         play_limit(chain, problem.thickness.gap), drag, cuts, beside, leaves_outline(problem, chain, beside),
-        *_with_far_base(problem, chain, low, high),
+        *_with_far_base(problem, chain, low, high), _seen_from_bases(problem, own, chain, drag, corners),
     )  # fmt: skip
     own.lanes.append(found)
     return found
@@ -243,9 +247,13 @@ def far_shift(own: Repertoire, lead: Lane, base: str, section: int) -> Array:
 
     A thick stack stops its far base before the nominal fold would.
     """
-    if base != lead.chain.far:
+    return _far_shift(own, lead.chain, lead.drag, base, section)
+
+
+def _far_shift(own: Repertoire, chain: Chain, drag: Array | None, base: str, section: int) -> Array:
+    if base != chain.far:
         return upright(own.nominal.down[base][section])
-    return lead.drag if lead.drag is not None else upright(_stopped(own.nominal, lead.chain, section))
+    return drag if drag is not None else upright(_stopped(own.nominal, chain, section))
 
 
 def stops_early(own: Repertoire, x: Lane) -> bool:
@@ -268,27 +276,30 @@ def upright(height: Array) -> Array:
     return shift
 
 
+def _seen_from_bases(
+    problem: Problem, own: Repertoire, chain: Chain, drag: Array | None, corners: Mapping[int, tuple[Array, Array]]
+) -> tuple[Array, Array]:
+    # Where a tilted box gets wider by half the gap, its bounds do so by up to a diagonal of it.
+    margin = math.sqrt(3.0) * problem.thickness.gap / 2
+    lows, highs = [], []
+    for section, (low, high) in corners.items():
+        shift = np.array([_far_shift(own, chain, drag, base, section) for base in own.unit.bases])
+        lows.append((low.min(1) - shift).min(1))
+        highs.append((high.max(1) - shift).max(1))
+    return np.array(lows).min(0) - margin, np.array(highs).max(0) + margin
+
+
 def _reach(problem: Problem, own: Repertoire) -> dict[str, tuple[Array, Array]]:
     thickest = max(problem.sites[p].panel for p in own.unit.patches)
     margin = ROOM_THICKNESSES * (thickest + problem.thickness.gap)
-    found = {b: (np.full(3, np.inf), np.full(3, -np.inf)) for b in own.unit.bases}
-    for section in range(own.nominal.sections):
-        straight = [x for x in own.lanes if x.drag is None]
-        for group in (straight, *([x] for x in own.lanes if x.drag is not None)):
-            many = swept(problem, own, group, section)
-            if many is None:
-                continue
-            far, drag = group[0].chain.far, group[0].drag
-            least, most = many.low.min(1), many.high.max(1)
-            for base in own.unit.bases:
-                shift = drag if base == far and drag is not None else upright(own.nominal.down[base][section])
-                low, high = (least - shift).min(0) - margin, (most - shift).max(0) + margin
-                found[base] = (np.minimum(found[base][0], low), np.maximum(found[base][1], high))
-    return found
+    bases = own.unit.bases
+    low = np.array([x.reach[0] for x in own.lanes]).reshape(-1, len(bases), 3).min(axis=0, initial=np.inf) - margin
+    high = np.array([x.reach[1] for x in own.lanes]).reshape(-1, len(bases), 3).max(axis=0, initial=-np.inf) + margin
+    return dict(zip(bases, zip(low, high, strict=True), strict=True))
 
 
 def _with_far_base(problem: Problem, chain: Chain, low: Array, high: Array) -> tuple[Array, Array]:
     if chain.far is None:
         return low, high
-    plate, way = bounds(anatomy.base_boxes(problem.scaffold.base(chain.far), problem.thickness)), ends(chain)
-    return np.minimum(low, plate[0].min(0) + way), np.maximum(high, plate[1].max(0) + way)
+    (least, most), way = problem.plates[chain.far], ends(chain)
+    return np.minimum(low, least + way), np.maximum(high, most + way)

@@ -33,7 +33,7 @@ def played(
     problem, scene, holds = group.problem, group.scene, True
     by_name = {u.name: u for u in group.units}
     for unit in group.units:
-        scene = shown(scene, unit, _plain_chains(problem, unit, options, proposal), is_folded=False)
+        scene = shown(scene, unit.patches, _plain_chains(problem, unit, options, proposal), is_folded=False)
     folds: list[UnitFold] = []
     done: set[str] = set()
     for name in proposal.order:

@@ -101,7 +101,7 @@ def open_scene(problem: Problem) -> Scene:
 
 def advanced(scene: Scene, unit: Unit, chosen: Mapping[str, Option], chains: Iterable[Chain], travel: Array) -> Scene:
     """The scene after the unit has folded as chosen, by the chains; `travel` (b, 3) is each base's translation, mm."""
-    now = shown(scene, unit, chains, is_folded=True)
+    now = shown(scene, unit.patches, chains, is_folded=True)
     held = {**scene.chains, **{c.patch: c for c in chains}}
     gone = scene.gone | {p for p in unit.patches if p not in held}
     chosen = {**scene.chosen, **chosen}
@@ -110,12 +110,12 @@ def advanced(scene: Scene, unit: Unit, chosen: Mapping[str, Option], chains: Ite
     )
 
 
-def shown(scene: Scene, unit: Unit, chains: Iterable[Chain], *, is_folded: bool) -> Scene:
-    """The scene with the unit's patches as those chains, open or folded; its other patches are gone."""
+def shown(scene: Scene, patches: Iterable[str], chains: Iterable[Chain], *, is_folded: bool) -> Scene:
+    """The scene with these patches as those chains, open or folded; the others of them are gone."""
     by_patch = {c.patch: c for c in chains}
     solids, places, base = list(scene.solids), dict(scene.places), scene.base.copy()
     fresh: dict[int, Solid] = {}
-    for patch in unit.patches:
+    for patch in patches:
         made = _chain_solids(scene, by_patch[patch], is_folded=is_folded) if patch in by_patch else ()
         free = list(places[patch])
         base[free] = -1

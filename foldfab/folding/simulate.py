@@ -40,7 +40,8 @@ def clashes(
     They are patch and patch, patch and something around, or what hangs on two bases. `number` gives the number of every
     base.
     """
-    picked = np.unique(np.append(np.arange(0, len(motion.samples), STRIDE), len(motion.samples) - 1))
+    last = len(motion.samples) - 1
+    picked = np.append(np.arange(0, last, STRIDE), last)
     own_plates = _own_plates(number, chains, around)
     met: dict[tuple[str, str], float] = {}
     for start in range(0, max(len(picked) - 1, 1), SCENE):
@@ -143,7 +144,6 @@ def _first(
 
 def _own_plates(number: Mapping[str, int], chains: tuple[Chain, ...], around: Surroundings) -> Bools:
     """(chains, boxes) the plates that a chain's own hinges stand on."""
-    plate = np.array([s.base if s.state == "base" else -1 for s in around.solids], dtype=np.int64)[around.owner]
-    own = np.array([[number[c.anchor], number[c.far or c.anchor]] for c in chains])
-    found: Bools = (own[:, :, None] == plate).any(1) if len(chains) else np.zeros((0, len(plate)), dtype=bool)
+    own = np.array([[number[c.anchor], number[c.far or c.anchor]] for c in chains]).reshape(-1, 2)
+    found: Bools = (own[:, :, None] == around.plate).any(1)
     return found

@@ -16,7 +16,7 @@ from foldfab.folding.optimum import NO_MORE, PLAYING, lower_bound, optimal
 from foldfab.folding.ordering import Ordered, floors, greedy, travel
 from foldfab.folding.problem import Problem, without
 from foldfab.folding.rehearsal import first_clash
-from foldfab.folding.scene import open_scene
+from foldfab.folding.scene import Scene, open_scene
 from foldfab.folding.site import sites, slab
 from foldfab.folding.soundness import disconnected, rigid_patches
 from foldfab.folding.symmetry import twins
@@ -68,11 +68,12 @@ def _solved(scaffold: Scaffold, thickness: Thickness) -> FoldSolution:
     require_allowed(problem)
     least: float | None = None
     for _ in range(REHEARSALS):
-        ordered, bound = _ordered(problem, choices)
+        scene = open_scene(problem)
+        ordered, bound = _ordered(problem, scene, choices)
         # What a rehearsal forbids belongs to one order; the bound is over all options.
         least = bound if least is None else least
         bound = min(bound, least)
-        met = first_clash(problem, open_scene(problem), ordered.folds)
+        met = first_clash(problem, scene, ordered.folds)
         if met is None:
             return solution(problem, bound, ordered)
         problem = without(problem, problem.banned | {met})
@@ -81,9 +82,8 @@ def _solved(scaffold: Scaffold, thickness: Thickness) -> FoldSolution:
     raise FoldingError(f"no folding solution found: {told} stay in the way of what folds before; try another thickness")
 
 
-def _ordered(problem: Problem, choices: Mapping[str, Choice]) -> tuple[Ordered, float]:
+def _ordered(problem: Problem, scene: Scene, choices: Mapping[str, Choice]) -> tuple[Ordered, float]:
     """The folds of all units in their order, and what any order counts at least; `choices` is the cheapest of each."""
-    scene = open_scene(problem)
     require_choices(problem, choices)
     ordered = greedy(problem, scene, choices)
     floor = {name: choice.weight for name, choice in choices.items()}
@@ -107,13 +107,16 @@ def posed(scaffold: Scaffold, thickness: Thickness) -> Problem:
     placed = {site.patch.name: site for site in sites(scaffold, thickness)}
     units = decompose(scaffold)
     tree = unit_tree(tuple(base.name for base in scaffold.bases), units)
-    plates = [anatomy.base_boxes(base, thickness) for base in scaffold.bases]
-    furniture = stacked([*plates, *(slab(site, thickness) for site in placed.values())])
+    plates = {base.name: anatomy.base_boxes(base, thickness) for base in scaffold.bases}
+    corners = {name: bounds(plate) for name, plate in plates.items()}
+    furniture = stacked([*plates.values(), *(slab(site, thickness) for site in placed.values())])
     low, high = bounds(furniture)
     problem = Problem(
         scaffold, scaffold.recipe.fold, thickness, placed, units, tree, {p: u for u in units for p in u.patches},
         {part.name: part for part in scaffold.recipe.parts},
-        {base.name: anatomy.faces(base, thickness) for base in scaffold.bases}, furniture, (low.min(0), high.max(0)),
+        {base.name: anatomy.faces(base, thickness) for base in scaffold.bases},
+        {name: (lower.min(0), upper.max(0)) for name, (lower, upper) in corners.items()},
+        furniture, (low.min(0), high.max(0)),
     )  # fmt: skip
     return replace(problem, twins=twins(problem))
 

@@ -20,8 +20,12 @@ from foldfab.geometry.boxes import Boxes, bounds, near_pairs, overlaps
 
 PARALLEL = 1.0 - 1e-9
 """Cosine above which two hinge directions are the same line."""
+SQUARE = 1e-9
+"""Cosine below which two hinge directions are square to each other."""
 INSET = 1e-6
 """Pieces end this much short of their cuts, mm, so that neighbours do not count as meeting."""
+_LEVEL = 1e-300
+"""What is divided by instead of the slope of a level side."""
 SAMPLE = 8
 """One in this many meetings is looked at first."""
 CHUNK = 20_000
@@ -132,23 +136,35 @@ def blocked(a: Batch, cuts: Array, b: Batch, excluded: Excluded = None) -> tuple
         (lanes, N_s), and the lane and box of `b` of each meeting (k,), (k,), each once.
     """
     found = np.zeros((len(cuts), cuts.shape[1] - 1), dtype=bool)
-    lanes, others = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
+    met: set[int] = set()
     for frame, p, q in meetings(a, b, excluded):
         frame, p, q = _once(a, b, frame, p, q)
-        box = _at(a, frame, p)
-        pieces = _pieces(box, cuts[a.lane[p]])
-        shape = pieces.half.shape[:-1]
-        other = _at(b, frame, q)
+        lane = a.lane[p]
+        row, piece = np.nonzero(_blocked(_at(a, frame, p), cuts[lane], _at(b, frame, q)))
+        found[lane[row], piece] = True
+        met.update((lane[row] * len(b) + q[row]).tolist())
+    lanes, others = np.divmod(np.array(sorted(met), dtype=np.int64), max(len(b), 1))
+    return found, lanes, others
+
+
+def _blocked(a: Boxes, cuts: Array, b: Boxes) -> Bools:
+    """(k, N_s) which pieces of boxes (k,) meet the boxes that they overlap."""
+    one = _intervals(a, cuts)
+    real: Bools = one[1] > one[0]
+    square = np.abs(np.einsum("kj,kj->k", a.axes[:, 1], b.axes[:, 1])) < SQUARE
+    found = np.zeros(real.shape, dtype=bool)
+    k = np.nonzero(square)[0]
+    if len(k):
+        first, second, own = a[k], b[k], (one[0][k], one[1][k])
+        found[k] = _share(_heights(second, first.axes[:, 1], own), _heights(first, second.axes[:, 1], _whole(second)))[
+            ..., 0
+        ]
+    k = np.nonzero(~square)[0]
+    if len(k):
+        pieces, other = _pieces(a[k], cuts[k]), b[k]
         wide = Boxes(other.center[:, None], other.axes[:, None], other.half[:, None])
-        met = overlaps(pieces, _shaped(wide, shape)) & (pieces.half[..., 1] > 0)
-        row, piece = np.nonzero(met)
-        found[a.lane[p[row]], piece] = True
-        lanes.append(a.lane[p[row]])
-        others.append(q[row])
-    if len(lanes) == 1:
-        return found, lanes[0], others[0]
-    pairs = np.unique(np.stack([np.concatenate(lanes), np.concatenate(others)]), axis=1)
-    return found, pairs[0], pairs[1]
+        found[k] = overlaps(pieces, _shaped(wide, pieces.half.shape[:-1]))
+    return found & real
 
 
 def conflicts(a: Batch, b: Batch, cuts: Array, excluded: Bools) -> dict[tuple[int, int], Bools]:
@@ -168,19 +184,16 @@ def conflicts(a: Batch, b: Batch, cuts: Array, excluded: Bools) -> dict[tuple[in
 
 def _fill(table: Bools, place: Indices, a: Boxes, cuts_a: Array, b: Boxes, cuts_b: Array) -> None:
     """Marks in `table` (pairs, N_s, N_s) which pieces of overlapping boxes (k,) meet; `place` (k,) is their pair."""
-    low_a, high_a = _intervals(a, cuts_a)
-    low_b, high_b = _intervals(b, cuts_b)
+    one, other = _intervals(a, cuts_a), _intervals(b, cuts_b)
+    real: Bools = (one[1] > one[0])[:, :, None] & (other[1] > other[0])[:, None]
     cosine = np.einsum("kj,kj->k", a.axes[:, 1], b.axes[:, 1])
-    same = np.abs(cosine) > PARALLEL
-    # On the line of `a`, where `b` may run the other way.
-    sign = np.sign(cosine)[:, None]
-    low, high = np.minimum(sign * low_b, sign * high_b), np.maximum(sign * low_b, sign * high_b)
-    real: Bools = (high_a > low_a)[:, :, None] & (high_b > low_b)[:, None]
-    row, s, t = np.nonzero(
-        real & same[:, None, None] & (low_a[:, :, None] < high[:, None]) & (low[:, None] < high_a[:, :, None])
-    )
+    same, square = np.abs(cosine) > PARALLEL, np.abs(cosine) < SQUARE
+    met = real & _share((one[0], one[1]), _on_line(other, cosine)) & same[:, None, None]
+    if square.any():
+        met |= real & _share(_heights(b, a.axes[:, 1], one), _heights(a, b.axes[:, 1], other)) & square[:, None, None]
+    row, s, t = np.nonzero(met)
     table[place[row], s, t] = True
-    rest = np.nonzero(~same)[0]
+    rest = np.nonzero(~same & ~square)[0]
     if len(rest):
         first, second = _pieces(a[rest], cuts_a[rest]), _pieces(b[rest], cuts_b[rest])
         near: Bools = real[rest] & _bounds_meet(bounds(first), bounds(second))
@@ -192,11 +205,56 @@ def _fill(table: Bools, place: Indices, a: Boxes, cuts_a: Array, b: Boxes, cuts_
             table[place[rest[row[hit]]], s[hit], t[hit]] = True
 
 
+def _on_line(intervals: tuple[Array, Array], cosine: Array) -> tuple[Array, Array]:
+    """Intervals (k, n) along hinge directions, on lines that may run the other way."""
+    low, high = (end * np.sign(cosine)[:, None] for end in intervals)
+    return np.minimum(low, high), np.maximum(low, high)
+
+
+def _share(a: tuple[Array, Array], b: tuple[Array, Array]) -> Bools:
+    """Which intervals (k, n) and (k, m) have more than an end in common, (k, n, m)."""
+    found: Bools = (a[0][:, :, None] < b[1][:, None]) & (b[0][:, None] < a[1][:, :, None])
+    return found
+
+
+def _heights(boxes: Boxes, along: Array, intervals: tuple[Array, Array]) -> tuple[Array, Array]:
+    """Between which heights boxes (k,) reach into intervals (k, n) of horizontal lines square to their hinges.
+
+    Boxes whose hinges are square to each other meet in those pieces in which they reach the same height: where one of
+    them is along its own hinge does not matter to what the other one needs.
+    """
+    middle = np.einsum("kj,kj->k", boxes.center, along)[:, None]
+    low, high = intervals[0] - middle, intervals[1] - middle
+    sides, rises, half = np.einsum("kij,kj->ki", boxes.axes[:, ::2], along), boxes.axes[:, ::2, 2], boxes.half[:, ::2]
+    # A box is the same seen from its other end: how far it reaches down is how far it reaches up there.
+    both = _highest(sides, rises, half, np.concatenate([low, -high], axis=1), np.concatenate([high, -low], axis=1))
+    count, height = low.shape[1], boxes.center[:, 2:]
+    return height - both[:, count:], height + both[:, :count]
+
+
+def _highest(sides: Array, rises: Array, half: Array, low: Array, high: Array) -> Array:
+    """(k, n) how far rectangles reach above their middle where they are between `low` and `high` (k, n) beside it.
+
+    `sides` and `rises` (k, 2) are the components of their unit sides, `half` (k, 2) their half lengths; -inf where they
+    do not reach there.
+    """
+    leans = sides * np.sign(rises)
+    corner = (leans * half).sum(1)[:, None]
+    at = np.minimum(np.maximum(corner, low), high)
+    # A level side bounds no height.
+    slopes = np.maximum(np.abs(rises), _LEVEL)[:, :, None]
+    found = ((half[:, :, None] - leans[:, :, None] * at[:, None]) / slopes).min(1)
+    return np.where(np.abs(at) <= (np.abs(sides) * half).sum(1)[:, None], found, -np.inf)
+
+
 def _bounds_meet(a: tuple[Array, Array], b: tuple[Array, Array]) -> Bools:
     """Which pieces (k, n) and (k, m) have bounds that overlap, (k, n, m)."""
-    is_below: Bools = np.all(a[0][:, :, None] <= b[1][:, None], axis=-1)
-    is_above: Bools = np.all(a[1][:, :, None] >= b[0][:, None], axis=-1)
-    return is_below & is_above
+    (low_a, high_a), (low_b, high_b) = a, b
+    found = np.ones((len(low_a), low_a.shape[1], low_b.shape[1]), dtype=bool)
+    for axis in range(3):
+        found &= low_a[:, :, None, axis] <= high_b[:, None, :, axis]
+        found &= low_b[:, None, :, axis] <= high_a[:, :, None, axis]
+    return found
 
 
 def _once(a: Batch, b: Batch, frame: Indices, p: Indices, q: Indices) -> tuple[Indices, Indices, Indices]:
@@ -220,6 +278,12 @@ def _intervals(boxes: Boxes, cuts: Array) -> tuple[Array, Array]:
     low = np.maximum((middle - boxes.half[:, 1])[:, None], cuts[:, :-1] + INSET)
     high = np.minimum((middle + boxes.half[:, 1])[:, None], cuts[:, 1:] - INSET)
     return low, high
+
+
+def _whole(boxes: Boxes) -> tuple[Array, Array]:
+    """Where boxes (k,) begin and end (k, 1) along their hinge direction."""
+    middle = np.einsum("kj,kj->k", boxes.center, boxes.axes[:, 1])
+    return (middle - boxes.half[:, 1])[:, None], (middle + boxes.half[:, 1])[:, None]
 
 
 def _pieces(boxes: Boxes, cuts: Array) -> Boxes:

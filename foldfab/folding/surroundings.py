@@ -19,7 +19,7 @@ from foldfab.folding.space import Batch
 from foldfab.folding.tree import between, clusters
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Array, Bools, Indices
-from foldfab.geometry.boxes import Boxes, near_pairs, stacked
+from foldfab.geometry.boxes import DENSE, Boxes, bounds, moved, near_pairs, stacked
 
 NEARLY = 0.2
 """What is unfolded and keeps bases apart by less than this share of K more than their stack is not in the way."""
@@ -45,8 +45,12 @@ class Surroundings:
     """(n,) the cluster of each box of the solids."""
     owner: Indices
     """(n,) the solid of each box."""
+    plate: Indices
+    """(n,) the base whose plate each box belongs to, by number; -1 for what is no plate."""
     boxes: Boxes
     """(n,) where they are, in the unit's frame."""
+    corners: tuple[Array, Array]
+    """Lower and upper corners (n, 3) of the boxes' bounds."""
     limits: Limits
     standing: frozenset[str]
     """What stands unfolded between two bases that a chain of the unit would bring together."""
@@ -85,12 +89,14 @@ def _looked(problem: Problem, scene: Scene, own: Repertoire) -> Surroundings:
     picked = np.nonzero(near)[0]
     solids = tuple(scene.solids[i] for i in picked)
     owner = np.repeat(np.arange(len(solids)), [len(s.boxes) for s in solids])
-    boxes = stacked([s.boxes for s in solids])
-    boxes = Boxes(boxes.center + shift[picked][owner], boxes.axes, boxes.half)
+    plate = np.array([s.base if s.state == "base" else -1 for s in solids], dtype=np.int64)[owner]
+    boxes = moved(stacked([s.boxes for s in solids]), shift[picked][owner])
     limits, standing = _limits(problem, scene, unit, pairs, shift)
     whole = _bounds_by_cluster(unit, low, high, group, is_other) if problem.options.stay_in_box else {}
     key = _key(problem, scene, unit, limits, standing, solids, np.concatenate([low[picked], high[picked]]), offset)
-    return Surroundings(cluster, offset, solids, group[picked][owner], owner, boxes, limits, standing, whole, key)
+    return Surroundings(
+        cluster, offset, solids, group[picked][owner], owner, plate, boxes, bounds(boxes), limits, standing, whole, key
+    )
 
 
 def depends_on(problem: Problem, unit: Unit, around: Surroundings) -> set[str]:
@@ -120,6 +126,7 @@ def _across(
     a = b = np.nonzero(is_other)[0]
     if len(unit.bases) == 2:
         a, b = a[group[a] == 0], b[group[b] == 1]
+    if len(unit.bases) == 2 and len(a) * len(b) > DENSE:
         a = _facing(low, high, a, b, clear[0, 1])
         b = _facing(low - [0, 0, clear[0, 1]], high, b, a, 0.0)
     if not len(a) or not len(b):
@@ -129,6 +136,8 @@ def _across(
     inside = (low[p, :2] < high[q, :2]).all(-1) & (low[q, :2] < high[p, :2]).all(-1) & (group[p] < group[q])
     room = low[q, 2] - high[p, 2]
     inside &= (room > -1e-6) & (room <= clear[group[p], group[q]])
+    if not inside.any():
+        return []
     p, q = p[inside], q[inside]
     code = group[p] * len(unit.bases) + group[q]
     order = np.argsort(code, kind="stable")

@@ -145,9 +145,8 @@ def least_choice(problem: Problem, own: Repertoire) -> Choice:
         return Choice(np.inf, {})
     places = {o.patch: o.place(i) for o, i in zip(graph.options, picked, strict=True)}
     # Where the work did not suffice to prove the choice, what it may be too dear by is no part of what must be paid.
-    return Choice(
-        graph.weight(picked) - sum(graph.gaps), {p: place for p, place in places.items() if place is not None}
-    )
+    weight = problem.least[own.unit] = graph.weight(picked) - sum(graph.gaps)
+    return Choice(weight, {p: place for p, place in places.items() if place is not None})
 
 
 def is_solved(problem: Problem, around: Surroundings) -> bool:
@@ -219,9 +218,13 @@ def _wanted(problem: Problem, own: Repertoire, graph: Graph, picked: tuple[int, 
     """The patches with lanes not made yet that could better a choice; all such where there is no choice."""
     if picked is None:
         return [p for p in own.unit.patches if own.later[p]]
+    if graph.weight(picked) <= problem.least.get(own.unit, -np.inf):
+        return []
     least = {p: _price(problem, p, many[0].variant) if many else np.inf for p, many in own.plain.items()}
     spare = graph.weight(picked) - sum(price for price in least.values() if np.isfinite(price))
-    return [p for p, later in own.later.items() if later and _price(problem, p, later[0]) - least[p] < spare]
+    prices = {p: _price(problem, p, later[0]) for p, later in own.later.items() if later}
+    affordable = {p: price for p, price in prices.items() if price - least[p] < spare}
+    return graph.promising(affordable) if affordable else []
 
 
 def _price(problem: Problem, patch: str, variant: Variant) -> float:

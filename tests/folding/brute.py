@@ -98,7 +98,7 @@ def _holds(
     """Whether a choice folds in an order; what lanes its scenes ask for is added."""
     scene = open_scene(problem)
     for unit in order:
-        scene = shown(scene, unit, _plain(problem, unit, chosen), is_folded=False)
+        scene = shown(scene, unit.patches, _plain(problem, unit, chosen), is_folded=False)
     folds = []
     for unit in order:
         own = repertoire(problem, unit)

@@ -42,7 +42,7 @@ def test_it_is_never_dearer_than_greedy(solution: Callable[..., FoldSolution], n
 @pytest.mark.parametrize("slanting", [True, False])
 def test_it_equals_brute_force(problem: Make, name: str, slanting: bool) -> None:
     made = problem(name, slanting=slanting, shrink_steps=2, max_hinges=1, ordering="optimal", time_limit=60.0)
-    found, bound = _ordered(made, floors(made))
+    found, bound = _ordered(made, open_scene(made), floors(made))
     assert bound == pytest.approx(weight(found), abs=NO_MORE), "not proven"
     assert cheaper(made, weight(found) - 2 * NO_MORE)[0] is None
     least, _ = cheaper(made, weight(found) + 2 * NO_MORE)
@@ -52,7 +52,7 @@ def test_it_equals_brute_force(problem: Make, name: str, slanting: bool) -> None
 def test_it_finds_what_greedy_misses(problem: Make, crowded: tuple[Part, ...]) -> None:
     first, best = (problem(crowded, ordering=how, time_limit=30.0) for how in ("greedy", "optimal"))
     greedily = weight(greedy(first, open_scene(first), floors(first)))
-    found, bound = _ordered(best, floors(best))
+    found, bound = _ordered(best, open_scene(best), floors(best))
     assert bound <= weight(found) + NO_MORE
     assert weight(found) <= greedily + NO_MORE
 
@@ -64,11 +64,11 @@ def test_what_a_unit_tried_in_vain_is_learned_once_and_changes_no_optimum(
     pose = optimum._group
     monkeypatch.setattr(optimum, "_group", lambda *given: groups.append(pose(*given)) or groups[-1])
     made = problem(three_in_a_row, ordering="optimal", time_limit=30.0)
-    found, bound = _ordered(made, floors(made))
+    found, bound = _ordered(made, open_scene(made), floors(made))
     assert groups and all(group.lessons and len(group.lessons) == len(set(group.lessons)) for group in groups)
     monkeypatch.setattr(replay, "_learn_from_repair", lambda *_: None)
     made = problem(three_in_a_row, ordering="optimal", time_limit=30.0)
-    other, other_bound = _ordered(made, floors(made))
+    other, other_bound = _ordered(made, open_scene(made), floors(made))
     assert (weight(found), bound) == pytest.approx((weight(other), other_bound), abs=NO_MORE)
 
 
@@ -82,7 +82,7 @@ def test_the_same_furniture_gets_the_same_answer(problem: Make, crowded: tuple[P
     told = []
     for _ in range(2):
         made = problem(crowded, ordering="optimal", time_limit=0.2)
-        found, bound = _ordered(made, floors(made))
+        found, bound = _ordered(made, open_scene(made), floors(made))
         told.append(([(f.unit.name, f.chosen) for f in found.folds], bound))
     assert told[0] == told[1]
 
@@ -91,7 +91,7 @@ def test_it_keeps_to_the_bounding_box(problem: Make, crowded: tuple[Part, ...]) 
     made = problem(crowded, ordering="optimal", stay_in_box=True, time_limit=5.0)
     low, high = made.outline
     skin = made.thickness.panel
-    found, _ = _ordered(made, floors(made))
+    found, _ = _ordered(made, open_scene(made), floors(made))
     for fold in found.folds:
         for chain in fold.chains:
             if chain.far is None:
@@ -229,7 +229,7 @@ def test_a_stranger_that_something_dragged_along_meets_may_be_narrowed(
         wall_at("low", -42, 0, 44, 36, -20), board_at("low-top", 44, 16, 36, -42, -20),
     )  # fmt: skip
     made = problem(parts, shrink_steps=2, max_hinges=1, ordering="optimal", time_limit=60.0)
-    found, bound = _ordered(made, floors(made))
+    found, bound = _ordered(made, open_scene(made), floors(made))
     assert bound == pytest.approx(weight(found), abs=NO_MORE), "not proven"
     assert cheaper(made, weight(found) - 2 * NO_MORE)[0] is None
 

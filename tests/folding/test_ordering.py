@@ -219,6 +219,36 @@ def test_what_is_in_the_way_of_others_folds_first_although_it_gains_nothing_itse
         box("z-left", (-26, 0, 22), (4, 16, 40)), box("z-right", (26, 0, 22), (4, 16, 40)),
     )  # fmt: skip
     made = solution(parts, slanting=False)
-    # One of the flaps is enough.
-    assert order(made) == [("z-left",), ("a-wall",), ("z-right",)]
+    assert order(made) == [("z-left",), ("z-right",), ("a-wall",)]
     assert made.modification("a-wall").window == (0.0, 1.0)
+
+
+def test_of_units_that_count_the_same_the_lowest_folds_first(solution: Make, board_at: Box, wall_at: Box) -> None:
+    parts = (
+        board_at("ground", 0), board_at("middle", 64), board_at("top", 128),
+        wall_at("a-upper", 0, 64, 128), wall_at("z-lower", 0, 0, 64),
+    )  # fmt: skip
+    assert order(solution(parts, ordering="greedy")) == [("z-lower",), ("a-upper",)]
+
+
+def test_no_look_ahead_is_spent_on_preferences(
+    problem: Callable[..., Problem], box: Box, board_at: Box, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Four walls of a box, each of which would rather fold inwards before the others lie there."""
+    walls = {"left": (-98, 0), "right": (98, 0), "front": (0, -98), "back": (0, 98)}
+    parts = [board_at("ground", 0, 200, 200)]
+    parts += [box(n, (x, y, 42), (4, 180, 80) if x else (180, 4, 80)) for n, (x, y) in walls.items()]
+    made = problem(tuple(parts))
+    looked: list[str] = []
+    inner = ordering._change
+
+    def count(state: Any, fold: UnitFold) -> float:
+        looked.append(fold.unit.name)
+        change: float = inner(state, fold)
+        return change
+
+    monkeypatch.setattr(ordering, "_change", count)
+    found = greedy(made, open_scene(made), floors(made))
+    hinted = [fold.weight for fold in found.folds]
+    assert max(hinted) > 0 and sum(fold.cost for fold in found.folds) == 0.0
+    assert looked == [fold.unit.name for fold in found.folds[:-1]]

@@ -119,7 +119,7 @@ def test_a_unit_may_be_shown_open_with_its_hinges_without_being_folded(
     table_in_box: Problem, table_fold: UnitFold
 ) -> None:
     scene = open_scene(table_in_box)
-    now = shown(scene, table_fold.unit, table_fold.chains, is_folded=False)
+    now = shown(scene, table_fold.unit.patches, table_fold.chains, is_folded=False)
     assert_consistent(now)
     assert present(now) == present(scene)
     assert not now.done and not now.offset.any() and not now.chains
@@ -134,8 +134,8 @@ def test_a_unit_may_be_shown_open_with_its_hinges_without_being_folded(
 def test_what_is_shown_anew_takes_the_place_of_what_was_shown_before(
     table_in_box: Problem, table_fold: UnitFold
 ) -> None:
-    once = shown(open_scene(table_in_box), table_fold.unit, table_fold.chains, is_folded=False)
-    twice = shown(once, table_fold.unit, table_fold.chains, is_folded=True)
+    once = shown(open_scene(table_in_box), table_fold.unit.patches, table_fold.chains, is_folded=False)
+    twice = shown(once, table_fold.unit.patches, table_fold.chains, is_folded=True)
     assert_consistent(twice)
     assert {s.state for p in ("leg-left", "leg-right") for s in solids_of(twice, p)} == {"folded"}
     states = [s.state for s, base in zip(twice.solids, twice.base, strict=True) if base >= 0]

@@ -176,7 +176,7 @@ def test_a_chain_shown_with_its_hinges_is_seen_by_others(problem: Make, folded: 
     wall = whole(made, "left", 1, 1.0)
     # Moved so that it stands in the table's leg.
     inside = replace(wall, root=wall.root + np.array([110.0, 0.0, 0.0]))
-    crowded = shown(scene, later, (inside,), is_folded=False)
+    crowded = shown(scene, later.patches, (inside,), is_folded=False)
     found = met(made, crowded, fold.unit, fold.chains, fold.motion)
     assert ("left", "leg-left") in found
 

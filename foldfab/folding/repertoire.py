@@ -16,7 +16,7 @@ from foldfab.folding import anatomy, basic
 from foldfab.folding.basic import Variant
 from foldfab.folding.mechanism import ends, peak, reach
 from foldfab.folding.model import Chain
-from foldfab.folding.nominal import FRAMES, Nominal, nominal
+from foldfab.folding.nominal import FRAMES, Nominal, nominal, snapped
 from foldfab.folding.outline import leaves_outline
 from foldfab.folding.press import follow_down, play_limit
 from foldfab.folding.problem import Problem, extent, variants
@@ -226,7 +226,7 @@ def _movers(problem: Problem, own: Repertoire, chain: Chain) -> tuple[dict[int, 
         end = reach(chain, progress[0])
         far = (end - end[0]) @ chain.plane
     else:
-        progress = follow_down(chain, down - own.nominal.down[chain.far])
+        progress = snapped(follow_down(chain, down - own.nominal.down[chain.far]))
         far = None
     sections = [k for k in range(len(down)) if chain.far is None or progress[k, -1] > progress[k, 0]]
     found: dict[int, Boxes] = {}

@@ -12,7 +12,7 @@ from foldfab.folding import anatomy
 from foldfab.folding.basic import Variant
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.mechanism import reach
-from foldfab.folding.nominal import FRAMES
+from foldfab.folding.nominal import CLIMB, FRAMES
 from foldfab.folding.press import follow_down
 from foldfab.folding.problem import Problem
 from foldfab.folding.repertoire import (
@@ -80,17 +80,18 @@ def test_what_was_banned_is_no_variant(problem: Make) -> None:
 
 @pytest.mark.parametrize("name", ["h_scaffold", "slanted_h", "deep_box", "t_scaffold", "chair"])
 def test_a_lane_starts_as_high_as_it_stood_open_and_ends_flat(problem: Make, name: str) -> None:
-    """Accordions are looked at from where their snap is over: until then their bases stand still."""
+    """Until the snap of accordions is over their bases stand still."""
     made = problem(name)
     for unit in made.units:
         own = whole(made, unit)
         for x in own.lanes:
             start, end = own.movers[x.number][x.active.start], own.movers[x.number][x.active.stop - 1]
-            first = follow_down(x.chain, np.zeros(1)) if x.snap > 0 else np.zeros(1)
-            assert reach(x.chain, first)[0, 1] == pytest.approx(reach(x.chain, np.zeros(1))[0, 1], abs=1e-3)
-            expected = anatomy.moving_boxes(x.chain, made.thickness, first)
-            count = expected.center.shape[1]
-            assert start.center[0, :count] == pytest.approx(expected.center[0], abs=1e-6)
+            for frame, over in ((0, np.zeros(1)), (CLIMB, follow_down(x.chain, np.zeros(1)))):
+                if frame == 0 or x.snap > 0:
+                    assert reach(x.chain, over)[0, 1] == pytest.approx(reach(x.chain, np.zeros(1))[0, 1], abs=1e-3)
+                    expected = anatomy.moving_boxes(x.chain, made.thickness, over)
+                    count = expected.center.shape[1]
+                    assert start.center[frame, :count] == pytest.approx(expected.center[0], abs=1e-6)
             panels = end.axes[-1, : len(x.chain.lengths)]
             assert np.abs(panels[:, 0, 2]) == pytest.approx(np.ones(len(panels)), abs=1e-6)
             assert len(start.center) == FRAMES

@@ -20,6 +20,7 @@ from foldfab.folding.scene import Scene, alone, open_scene
 from foldfab.folding.solve import NO_MORE
 from foldfab.folding.surroundings import look
 from foldfab.folding.unit_fold import Refusal, UnitFold, fold_seen, fold_unit, least_choice
+from foldfab.recipe.model import Part
 
 from .every import whole
 
@@ -148,6 +149,17 @@ def test_what_a_simulation_finds_is_learned(problem: Make, monkeypatch: pytest.M
     assert fold.chosen["leg"].window[1] - fold.chosen["leg"].window[0] == 3
     # To either side with one hinge: the whole, and the two windows of four fifths.
     assert sorted(asked[:-1]) == sorted([(0, 5), (0, 4), (1, 5)] * 2)
+
+
+def test_what_meets_while_accordions_snap_is_known_before_anything_is_played(
+    problem: Make, box: Callable[..., Part], board_at: Callable[..., Part]
+) -> None:
+    """Knuckles at the corners of a low box: past the snap they are out of each other's way, before it they are not."""
+    walls = (box(name, (x, 0, 17), (4, 76, 30)) for name, x in (("left", -60), ("right", 60)))
+    ends = (box(name, (0, y, 17), (124, 4, 30)) for name, y in (("front", -41), ("back", 41)))
+    made = problem((board_at("ground", 0, 200, 120), board_at("ceiling", 34, 200, 120), *walls, *ends), slanting=False)
+    assert folds(made, "back").cost > 4 / 24
+    assert made.plays == [4]
 
 
 @pytest.mark.parametrize(("holds_for", "tries"), [("this", 61), ("any window", 5)])

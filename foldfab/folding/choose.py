@@ -36,8 +36,8 @@ WIDEST = 100
 Table = list[dict[int, Bools]]
 """For each group, by other group, which of their options (n, m) exclude each other."""
 
-Combination = tuple[tuple[int, int], ...]
-"""Options that must not all be taken together, each as (group, option)."""
+Combination = tuple[tuple[int, tuple[int, ...]], ...]
+"""Groups that must not all take one of some options of theirs."""
 
 
 def cheapest(
@@ -52,15 +52,15 @@ def cheapest(
     Args:
         costs: for each group, the costs (n,) of its options; infinite where an option is out of the question.
         conflicts: by groups (g, h) with g < h, which options (n_g, n_h) exclude each other; a missing pair has none.
-        forbidden: combinations of (group, option) that must not all be taken together.
+        forbidden: what must not all be taken together.
         gaps: gets by how much the choice may be dearer than the cheapest one, where the work did not suffice to tell.
         tangled: gets the groups that plain branch and bound gave up on, and says on which it need not be tried again.
     """
     if not conflicts and not forbidden:
         return tuple(int(np.argmin(c)) for c in costs) if all(np.isfinite(c.min()) for c in costs) else None
     table = _by_group(len(costs), conflicts)
-    held = _held(len(costs), forbidden)
-    alive = [_undominated(costs[g], table[g], held[g]) for g in range(len(costs))]
+    held = _held(costs, forbidden)
+    alive = [_undominated(costs[g], [*table[g].values(), *held[g]]) for g in range(len(costs))]
     taken: dict[int, int] = {}
     for groups in _islands(alive, table, forbidden):
         if len(groups) == 1 and not held[groups[0]]:
@@ -86,39 +86,37 @@ def _by_group(count: int, conflicts: Mapping[tuple[int, int], Bools]) -> Table:
     return table
 
 
-def _held(count: int, forbidden: frozenset[Combination]) -> list[list[int]]:
-    """For each group, its options that belong to a forbidden combination."""
-    held: list[list[int]] = [[] for _ in range(count)]
-    for combination in forbidden:
-        for g, option in combination:
-            held[g].append(option)
+def _held(costs: list[Array], forbidden: frozenset[Combination]) -> list[list[Bools]]:
+    """For each group, which of its options (n, 1) belong to each forbidden combination that it takes part in."""
+    held: list[list[Bools]] = [[] for _ in costs]
+    for combination in sorted(forbidden):
+        for g, options in combination:
+            held[g].append(np.isin(np.arange(len(costs[g])), options)[:, None])
     return held
 
 
-def _undominated(price: Array, conflicts: Mapping[int, Bools], held: list[int]) -> Bools:
+def _undominated(price: Array, conflicts: list[Bools]) -> Bools:
     """Which options (n,) of a group are worth looking at: none that is no dearer excludes no more.
 
-    An option that belongs to a forbidden combination may have to give way to one that it would dominate.
+    To belong to a forbidden combination is to exclude something as well.
     """
     alive: Bools = np.isfinite(price)
     rest = np.nonzero(alive)[0]
     rest = rest[np.argsort(price[rest], kind="stable")]
-    free = np.ones(len(price), dtype=bool)
-    free[held] = False
-    excludes = np.concatenate([np.zeros((len(rest), 1), dtype=bool), *(m[rest] for m in conflicts.values())], axis=1)
-    if len(rest) and free[rest[0]] and not excludes[0].any():
+    excludes = np.concatenate([np.zeros((len(rest), 1), dtype=bool), *(m[rest] for m in conflicts)], axis=1)
+    if len(rest) and not excludes[0].any():
         # The cheapest option of all excludes nothing: it dominates every other one.
         alive[rest[1:]] = False
         return alive
-    alive[rest[_dominated(excludes, free[rest])]] = False
+    alive[rest[_dominated(excludes)]] = False
     return alive
 
 
-def _dominated(excludes: Bools, free: Bools) -> Bools:
-    """Which options (n,), cheapest first, one before them dominates: it is free, and excludes (n, m) no more."""
+def _dominated(excludes: Bools) -> Bools:
+    """Which options (n,), cheapest first, one before them dominates, as it excludes (n, m) no more."""
     bits = np.packbits(excludes, axis=1)
     found = np.zeros(len(bits), dtype=bool)
-    for i in np.nonzero(free)[0].tolist():
+    for i in range(len(bits)):
         # What is dominated dominates nothing that its own dominator does not.
         if not found[i]:
             found[i + 1 :] |= ~(bits[i] & ~bits[i + 1 :]).any(1)
@@ -162,11 +160,12 @@ class _Search:
     def __init__(self, costs: list[Array], table: Table, forbidden: list[Combination], limit: int) -> None:
         self.costs = costs
         self.table = table
-        self.forbidden: dict[tuple[int, int], list[Combination]] = {}
+        self.forbidden: dict[tuple[int, int], list[Mapping[int, frozenset[int]]]] = {}
         """By (group, option), the forbidden combinations that it belongs to."""
         for combination in sorted(forbidden):
-            for place in combination:
-                self.forbidden.setdefault(place, []).append(combination)
+            together = {g: frozenset(options) for g, options in combination}
+            for place in ((g, option) for g, options in combination for option in options):
+                self.forbidden.setdefault(place, []).append(together)
         self.left = limit
         self.best: dict[int, int] | None = None
         self.bound = np.inf
@@ -190,7 +189,7 @@ class _Search:
 
     def _descend(self, alive: dict[int, Bools], taken: dict[int, int], spent: float, group: int, option: int) -> None:
         now = {**taken, group: option}
-        if any(all(now.get(g) == o for g, o in others) for others in self.forbidden.get((group, option), ())):
+        if any(all(now.get(g) in held for g, held in many.items()) for many in self.forbidden.get((group, option), ())):
             return
         left = {}
         for other, options in alive.items():

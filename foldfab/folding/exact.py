@@ -22,7 +22,7 @@ WORK = 2.0
 
 def proven(
     alive: Mapping[int, Bools], costs: list[Array], table: list[dict[int, Bools]],
-    forbidden: list[tuple[tuple[int, int], ...]], known: Mapping[int, int] | None,
+    forbidden: list[tuple[tuple[int, tuple[int, ...]], ...]], known: Mapping[int, int] | None,
 ) -> tuple[dict[int, int] | None, float]:  # fmt: skip
     """The cheapest option for each group, or None where there is no choice without conflicts, and by how much it may be
     dearer than the cheapest where the work did not suffice to tell.
@@ -31,7 +31,7 @@ def proven(
         alive: by group, which of its options (n,) may be taken.
         costs: for each group, the costs (n,) of its options.
         table: for each group, by other group, which of their options (n_g, n_h) exclude each other.
-        forbidden: combinations of (group, option) that must not all be taken together.
+        forbidden: groups that must not all take one of some options of theirs.
         known: the best choice known, to start from.
     """
     from ortools.sat.python import cp_model
@@ -47,8 +47,8 @@ def proven(
             if len(others):
                 model.add_at_most_one([on[g, int(o)], *(on[h, int(p)] for p in others)])
     for combination in forbidden:
-        if all(key in on for key in combination):
-            model.add_bool_or([~on[key] for key in combination])
+        taken = [sum(on[g, o] for o in options if (g, o) in on) for g, options in combination]
+        model.add(sum(taken) <= len(taken) - 1)
     model.minimize(sum(round(float(costs[g][o]) * UNITS_PER_COST) * var for (g, o), var in on.items()))
     for key in (known or {}).items():
         model.add_hint(on[key], True)

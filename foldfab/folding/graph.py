@@ -109,7 +109,7 @@ class Graph:
         place = {p: g for g, p in enumerate(self.patches)}
         for patches in clash.patches:
             groups = sorted(place[p] for p in patches)
-            alike = [self._alike(g, picked[g], clash) for g in groups]
+            alike = [self.options[g].like(picked[g], clash.holds_for, clash.depth) for g in groups]
             if len(groups) == 1:
                 self.costs[groups[0]][alike[0]] = np.inf
             elif len(groups) == 2:
@@ -119,11 +119,4 @@ class Graph:
                 own[np.ix_(*alike)] = True
                 self.tables[g, h] = own
             else:
-                self.forbidden.add(tuple((g, picked[g]) for g in groups))
-
-    def _alike(self, group: int, index: int, clash: Clash) -> list[int]:
-        """The options of a patch that a clash of the one at `index` rules out as well."""
-        options = self.options[group]
-        if clash.holds_for == "this" or index == len(options.price) - 1:
-            return [index]
-        return options.like(index, wider=clash.holds_for == "wider windows")
+                self.forbidden.add(tuple((g, tuple(many)) for g, many in zip(groups, alike, strict=True)))

@@ -66,6 +66,12 @@ class Lane:
     high: Array
     """(3,) upper corner."""
 
+    def comes_past(self, depth: float) -> bool:
+        """Whether its far base, coming straight down, passes `depth` mm below its start, or above if negative."""
+        if self.drag is not None or self.chain.far is None:
+            return False
+        return self.snap >= -depth if depth < 0 else float(-self.way @ self.chain.rise) >= depth
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Repertoire:

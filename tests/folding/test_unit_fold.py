@@ -162,6 +162,32 @@ def test_what_meets_while_accordions_snap_is_known_before_anything_is_played(
     assert made.plays == [4]
 
 
+def test_what_hangs_on_a_base_meets_the_same_however_the_base_comes_down(
+    problem: Make, board_at: Callable[..., Part], wall_at: Callable[..., Part], leaning_at: Callable[..., Part]
+) -> None:
+    """A post that leans out beside the ceiling: no choice keeps the ceiling above it, and two plays tell."""
+    boards = (board_at("ground", 0, 240), board_at("ceiling", 84, x=-20))
+    walls = (wall_at("left", -100, 0, 84), wall_at("right", 50, 0, 84))
+    made = problem((*boards, *walls, leaning_at("post", 62, 107, 0, 124)), slanting=False)
+    found = fold_unit(made, open_scene(made), made.unit_of["left"])
+    assert isinstance(found, Refusal) and "post meets ceiling" in found.reason
+    assert len(made.plays) <= 2
+    alone_there = fold_unit(made, alone(open_scene(made), made.unit_of["left"]), made.unit_of["left"])
+    assert isinstance(alone_there, UnitFold)
+
+
+def test_it_does_not_where_a_higher_stack_stops_the_base_before(
+    problem: Make, board_at: Callable[..., Part], wall_at: Callable[..., Part], leaning_at: Callable[..., Part]
+) -> None:
+    """Where the ceiling would meet the post only at the end, three hinges in a wall keep it above that."""
+    boards = (board_at("ground", 0, 240), board_at("ceiling", 84, x=-20))
+    walls = (wall_at("left", -100, 0, 84), wall_at("right", 50, 0, 84))
+    made = problem((*boards, *walls, leaning_at("post", 79, 107, 0, 124)), slanting=False)
+    fold = folds(made, "left")
+    assert max(option.variant.hinges for option in fold.chosen.values() if option.variant) == 3
+    assert len(made.plays) <= 4
+
+
 @pytest.mark.parametrize(("holds_for", "tries"), [("this", 61), ("any window", 5)])
 def test_a_clash_rules_out_as_much_as_it_says(
     problem: Make, monkeypatch: pytest.MonkeyPatch, holds_for: str, tries: int

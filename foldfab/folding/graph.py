@@ -13,14 +13,14 @@ from foldfab.folding.options import options_of
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import Prospects
 from foldfab.folding.realise import Clash
-from foldfab.folding.repertoire import Lane, Repertoire
+from foldfab.folding.repertoire import Place, Repertoire
 from foldfab.folding.symmetry import bound, signature, unlike
 from foldfab.geometry.arrays import Array, Bools
 
 MANY = 16
 """Patches of a unit beyond which each way to drag its bases is looked at by itself, and not every pair of patches."""
 
-Lesson = tuple[Clash, tuple[tuple[Lane, tuple[int, int]] | None, ...]]
+Lesson = tuple[Clash, tuple[Place | None, ...]]
 """A clash and what was chosen for each patch of the unit."""
 
 
@@ -90,6 +90,16 @@ class Graph:
                     best = picked
         return best
 
+    def holds(self, places: Mapping[str, Place]) -> tuple[int, ...] | None:
+        """The choice of these lanes and windows, or None where it is not whole or something is against it here."""
+        if any(places.get(o.patch, (None,))[0] not in o.lanes for o in self.options):
+            return None
+        picked = tuple(o.index(places[o.patch]) for o in self.options)
+        is_free = all(np.isfinite(cost[i]) for cost, i in zip(self.costs, picked, strict=True))
+        is_free &= not any(table[picked[g], picked[h]] for (g, h), table in self.tables.items())
+        is_free &= not any(all(picked[g] in many for g, many in combination) for combination in self.forbidden)
+        return picked if is_free else None
+
     def _modes(self, lanes: list[set[int]]) -> list[list[Bools]]:
         """For each way to drag the bases, which options of each patch (n,) go along; deletion always does."""
         made = []
@@ -106,6 +116,10 @@ class Graph:
     def learn(self, picked: tuple[int, ...], clash: Clash) -> None:
         """Adds what a simulation found: what is too wide for its neighbours is so when it is still wider."""
         self.learned.append((clash, tuple(o.place(i) for o, i in zip(self.options, picked, strict=True))))
+        for one in (clash, *clash.also):
+            self._learn(picked, one)
+
+    def _learn(self, picked: tuple[int, ...], clash: Clash) -> None:
         place = {p: g for g, p in enumerate(self.patches)}
         for patches in clash.patches:
             groups = sorted(place[p] for p in patches)

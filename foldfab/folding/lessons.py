@@ -125,6 +125,8 @@ def lessons_of(
             held += [(q, frozenset([None])) for q in sorted(scene.gone & set(options))]
             deciding = set()
         found.append(Lesson(tuple(held), _as_it_is(group, unit, deciding, done)))
+    for other in clash.also:
+        found += lessons_of(group, scene, unit, around, options, proposal, done, other)
     return found
 
 

@@ -50,10 +50,10 @@ class Problem:
     """What the patches of each unit can do, by unit."""
     poses: dict[object, Any] = field(default_factory=dict)
     """The first unit of each kind, by what it looks like wherever it stands."""
-    solved: dict[object, Any] = field(default_factory=dict)
-    """Solutions of units, by all that they depend on."""
-    begun: dict[object, Any] = field(default_factory=dict)
-    """Conflict graphs of units that were estimated but not folded yet, by all that they depend on."""
+    solved: dict[tuple[Any, ...], Any] = field(default_factory=dict)
+    """Solutions of units, by all that they depend on: first the key of the surroundings, which begins with the unit."""
+    begun: dict[tuple[Any, ...], Any] = field(default_factory=dict)
+    """Conflict graphs of units that were estimated but not folded yet, by the same."""
     hopeless: dict[Unit, str] = field(default_factory=dict)
     """Units that cannot fold wherever they stand, and why."""
     plays: list[int] = field(default_factory=list)
@@ -71,7 +71,16 @@ class Problem:
 
 def without(problem: Problem, banned: frozenset[tuple[str, Variant]]) -> Problem:
     """The problem with these variants banned, and nothing remembered that they could have been part of."""
-    return replace(problem, banned=banned, repertoires={}, poses={}, solved={}, begun={}, hopeless={})
+    touched = {problem.unit_of[patch] for patch, _ in banned ^ problem.banned}
+    # Units merged into one may hold any of them.
+    kept = {unit for unit in problem.units if unit not in touched}
+    return replace(
+        problem, banned=banned, poses=dict(problem.poses),
+        repertoires={unit: own for unit, own in problem.repertoires.items() if unit in kept},
+        solved={key: found for key, found in problem.solved.items() if key[0][0] in kept},
+        begun={key: found for key, found in problem.begun.items() if key[0][0] in kept},
+        hopeless={unit: why for unit, why in problem.hopeless.items() if unit in kept},
+    )  # fmt: skip
 
 
 def variants(problem: Problem, unit: Unit, patch: str) -> tuple[Variant, ...]:

@@ -40,6 +40,8 @@ class Clash:
     """For each of the sets, the two owners that meet; empty where nothing does."""
     cuts: bool = False
     """Whether it is about deletions that would leave the furniture in more than one piece."""
+    also: tuple[Clash, ...] = ()
+    """What else does not work, for other reasons."""
 
 
 def realised(
@@ -86,10 +88,10 @@ def _played(
             # What hangs on a base is dragged along with it, whatever is left of the patches that drag it.
             dragging = tuple((c.patch,) for c in chains if c.far is not None)
             return Clash(dragging, reason, "any window", met=(carried[0],) * len(dragging))
-        if carried:
-            return _carried_into(problem, unit, chains, motion, carried[0], met[carried[0]])
-        mine = tuple(tuple(p for p in pair if p in chosen) or tuple(chosen) for pair in met)
-        return Clash(mine, reason, "wider windows", met=tuple(met))
+        own = tuple(pair for pair in met if pair not in carried)
+        also = tuple(_carried_into(problem, unit, chains, motion, pair, met[pair]) for pair in carried[:1])
+        mine = tuple(tuple(p for p in pair if p in chosen) for pair in own)
+        return Clash(mine, reason, "wider windows", met=own, also=also)
     return chains, motion
 
 

@@ -73,6 +73,10 @@ class Lane:
         return self.snap >= -depth if depth < 0 else float(-self.way @ self.chain.rise) >= depth
 
 
+Place = tuple[Lane, tuple[int, int]]
+"""A lane and a window in N_s-ths."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Repertoire:
     """The lanes of a unit and what was found out about them; it only ever grows."""
@@ -96,6 +100,8 @@ class Repertoire:
     """Lanes whose conflicts are known."""
     tables: dict[object, Bools] = field(default_factory=dict)
     """Conflict tables between the options of two patches that were made already."""
+    least: dict[str, Place] = field(default_factory=dict)
+    """By patch, its lane and window in the cheapest choice without conflicts, where that is known for certain."""
     reach: dict[str, tuple[Array, Array]] = field(default_factory=dict)
     """By base of the unit, lower and upper corner (3,) of all that the unit sweeps, as seen from that base."""
 

@@ -14,7 +14,7 @@ from foldfab.folding.congruent import repertoire
 from foldfab.folding.mechanism import reach
 from foldfab.folding.nominal import CLIMB, FRAMES
 from foldfab.folding.press import follow_down
-from foldfab.folding.problem import Problem
+from foldfab.folding.problem import Problem, without
 from foldfab.folding.repertoire import (
     ROOM_THICKNESSES,
     Lane,
@@ -28,6 +28,8 @@ from foldfab.folding.repertoire import (
     swept,
     upright,
 )
+from foldfab.folding.scene import open_scene
+from foldfab.folding.unit_fold import UnitFold, fold_unit
 from foldfab.geometry.boxes import bounds
 from foldfab.recipe.model import Part
 
@@ -76,6 +78,24 @@ def test_what_was_banned_is_no_variant(problem: Make) -> None:
     made = problem("h_scaffold")
     own = only(replace(made, banned=frozenset({("leg", IN_PLACE)}), repertoires={}))
     assert IN_PLACE not in {x.variant for x in own.plain["leg"]} and len(own.lanes) == 5
+
+
+def test_a_ban_forgets_nothing_of_other_units(problem: Make) -> None:
+    made = problem("tower")
+    scene, (a, b) = open_scene(made), (made.unit_of["a"], made.unit_of["b"])
+    for unit in (a, b):
+        fold_unit(made, scene, unit)
+    other = without(made, frozenset({("a", IN_PLACE)}))
+    assert repertoire(other, b) is repertoire(made, b) and repertoire(other, a) is not repertoire(made, a)
+    assert {key[0][0] for key in other.solved} == {b}
+    assert {key: found for key, found in made.solved.items() if key[0][0] is b} == other.solved
+    assert isinstance(found := fold_unit(other, scene, a), UnitFold)
+    assert found.chosen["a"].variant != IN_PLACE
+    # What is allowed again is as it was, and not as it is remembered from while it was banned.
+    assert repertoire(without(other, frozenset()), a).plain.keys() == repertoire(made, a).plain.keys()
+    assert {x.variant for x in repertoire(without(other, frozenset()), a).plain["a"]} == {
+        x.variant for x in repertoire(made, a).plain["a"]
+    }
 
 
 @pytest.mark.parametrize("name", ["h_scaffold", "slanted_h", "deep_box", "t_scaffold", "chair"])

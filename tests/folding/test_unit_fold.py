@@ -12,6 +12,7 @@ import pytest
 from foldfab.folding import unit_fold
 from foldfab.folding.conflict import drag_alike
 from foldfab.folding.congruent import repertoire
+from foldfab.folding.graph import Graph
 from foldfab.folding.options import options_of
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import prospects
@@ -226,6 +227,39 @@ def test_a_clash_of_two_forbids_them_together_and_of_three_all_at_once(
         made = problem("three_walls")
         folds(made, "back")
         assert len(asked) > 5 and not set(asked[:5]) & set(asked[5:])
+
+
+def test_all_that_a_play_shows_is_learned_at_once(problem: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two walls are too wide for each other, and besides the back must not fold as it does."""
+    asked: list[dict[str, object]] = []
+
+    def refuse(problem: Problem, scene: Scene, unit: object, around: object, chosen: dict[str, object]) -> object:
+        asked.append(dict(chosen))
+        if len(asked) == 1:
+            return Clash((("left", "right"),), "not together", also=(Clash((("back",),), "nor so", "any window"),))
+        return realised(problem, scene, unit, around, chosen)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(unit_fold, "realised", refuse)
+    folds(problem("three_walls"), "back")
+    first, second = asked[:2]
+    assert (first["left"], first["right"]) != (second["left"], second["right"])
+    assert first["back"].variant != second["back"].variant  # type: ignore[attr-defined]
+
+
+def test_the_cheapest_choice_is_not_looked_for_again_where_nothing_is_in_its_way(
+    problem: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = problem("three_walls")
+    unit, asked = made.unit_of["back"], []
+    least = least_choice(made, repertoire(made, unit))
+    search = Graph.cheapest
+    monkeypatch.setattr(Graph, "cheapest", lambda graph: (asked.append(graph), search(graph))[1])
+    assert folds(made, "back").weight == pytest.approx(least.weight)
+    assert not asked
+    # It is where it has been found out that the choice does not hold.
+    monkeypatch.setattr(unit_fold, "realised", lambda *_: Clash((unit.patches,), "no", "any window"))
+    made.solved.clear()
+    assert isinstance(fold_unit(made, open_scene(made), unit), Refusal) and asked
 
 
 def test_changed_patches_say_why(problem: Make, folded: Folded) -> None:

@@ -20,6 +20,7 @@ import numpy as np
 
 from foldfab.folding.eliminate import eliminated
 from foldfab.folding.exact import proven
+from foldfab.folding.work import Work
 from foldfab.geometry.arrays import Array, Bools
 
 EPSILON = 1e-12
@@ -46,6 +47,7 @@ def cheapest(
     forbidden: frozenset[Combination] = frozenset(),
     gaps: list[float] | None = None,
     tangled: set[tuple[int, ...]] | None = None,
+    work: Work | None = None,
 ) -> tuple[int, ...] | None:
     """The option of each group in the cheapest conflict-free choice, or None where there is none.
 
@@ -55,6 +57,7 @@ def cheapest(
         forbidden: what must not all be taken together.
         gaps: gets by how much the choice may be dearer than the cheapest one, where the work did not suffice to tell.
         tangled: gets the groups that plain branch and bound gave up on, and says on which it need not be tried again.
+        work: is charged for what CP-SAT does.
     """
     if not conflicts and not forbidden:
         return tuple(int(np.argmin(c)) for c in costs) if all(np.isfinite(c.min()) for c in costs) else None
@@ -67,9 +70,10 @@ def cheapest(
             price = np.where(alive[groups[0]], costs[groups[0]], np.inf)
             best: dict[int, int] | None = {groups[0]: int(np.argmin(price))} if np.isfinite(price).any() else None
         else:
-            best, gap = _solved(
-                {g: alive[g] for g in groups}, costs, table, forbidden, tangled if tangled is not None else set()
-            )
+            own = {g: alive[g] for g in groups}
+            best, gap, spent = _solved(own, costs, table, forbidden, tangled if tangled is not None else set())
+            if work is not None:
+                work.charge(spent)
             if gaps is not None and gap > 0:
                 gaps.append(gap)
         if best is None:
@@ -138,18 +142,19 @@ def _islands(alive: list[Bools], table: Table, forbidden: frozenset[Combination]
 def _solved(
     alive: Mapping[int, Bools], costs: list[Array], table: Table, forbidden: frozenset[Combination],
     tangled: set[tuple[int, ...]],
-) -> tuple[dict[int, int] | None, float]:  # fmt: skip
+) -> tuple[dict[int, int] | None, float, float]:  # fmt: skip
+    """The best option for each group, by how much it may be too dear, and the charge for CP-SAT."""
     groups = set(alive)
     own = [c for c in forbidden if {g for g, _ in c} <= groups]
     if len(groups) > FEW and not own:
         found = eliminated(alive, costs, table)
         if found is not None:
-            return found, 0.0
+            return found, 0.0, 0.0
     search = _Search(costs, table, own, SHORT if tuple(alive) in tangled else LIMIT)
     if len(groups) <= WIDEST:
         search.branch(dict(alive), {}, 0.0)
         if search.left >= 0:
-            return search.best, 0.0
+            return search.best, 0.0, 0.0
         tangled.add(tuple(alive))
     return proven(alive, costs, table, sorted(own), search.best)
 

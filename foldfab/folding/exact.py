@@ -12,20 +12,21 @@ from typing import Any
 
 import numpy as np
 
+from foldfab.folding.work import ENGINE, STARTING
 from foldfab.geometry.arrays import Array, Bools
 
 UNITS_PER_COST = 1e8
 """Costs are rounded to integers of this resolution."""
-WORK = 2.0
+WORK = 1.0
 """Deterministic time after which the best choice so far is taken."""
 
 
 def proven(
     alive: Mapping[int, Bools], costs: list[Array], table: list[dict[int, Bools]],
     forbidden: list[tuple[tuple[int, tuple[int, ...]], ...]], known: Mapping[int, int] | None,
-) -> tuple[dict[int, int] | None, float]:  # fmt: skip
-    """The cheapest option for each group, or None where there is no choice without conflicts, and by how much it may be
-    dearer than the cheapest where the work did not suffice to tell.
+) -> tuple[dict[int, int] | None, float, float]:  # fmt: skip
+    """The cheapest option for each group, or None where there is no choice without conflicts; by how much it may be
+    dearer than the cheapest where the work did not suffice to tell; and the charge for that, s.
 
     Args:
         alive: by group, which of its options (n,) may be taken.
@@ -52,12 +53,10 @@ def proven(
     model.minimize(sum(round(float(costs[g][o]) * UNITS_PER_COST) * var for (g, o), var in on.items()))
     for key in (known or {}).items():
         model.add_hint(on[key], True)
-    return _solved(model, on, costs, known)
+    return (*_solved(model, solver := _engine(), on, costs, known), _charge(solver))
 
 
-def _solved(
-    model: Any, on: Mapping[tuple[int, int], Any], costs: list[Array], known: Mapping[int, int] | None
-) -> tuple[dict[int, int] | None, float]:
+def _engine() -> Any:
     from ortools.sat.python import cp_model
 
     solver = cp_model.CpSolver()
@@ -68,6 +67,18 @@ def _solved(
     solver.parameters.cp_model_presolve = False
     solver.parameters.linearization_level = 2
     solver.parameters.max_deterministic_time = WORK
+    return solver
+
+
+def _charge(solver: Any) -> float:
+    return STARTING + ENGINE * float(solver.response_proto.deterministic_time)
+
+
+def _solved(
+    model: Any, solver: Any, on: Mapping[tuple[int, int], Any], costs: list[Array], known: Mapping[int, int] | None
+) -> tuple[dict[int, int] | None, float]:
+    from ortools.sat.python import cp_model
+
     status = solver.solve(model)
     if status == cp_model.INFEASIBLE:
         return None, 0.0

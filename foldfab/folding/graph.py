@@ -15,6 +15,7 @@ from foldfab.folding.prospects import Prospects
 from foldfab.folding.realise import Clash
 from foldfab.folding.repertoire import Place, Repertoire
 from foldfab.folding.symmetry import bound, signature, unlike
+from foldfab.folding.work import SEARCHING
 from foldfab.geometry.arrays import Array, Bools
 
 MANY = 16
@@ -36,7 +37,7 @@ class Graph:
         learned: Iterable[Lesson] = (),
         chosen: Mapping[str, Option] | None = None,
     ) -> None:
-        self.patches = own.unit.patches
+        self.patches, self.work = own.unit.patches, problem.work
         options = options_of(problem, found, offset)
         self.options = [options[p] for p in self.patches]
         self.costs: list[Array] = [o.weight.copy() for o in self.options]
@@ -80,15 +81,19 @@ class Graph:
         """The cheapest choice, one option a patch."""
         self.gaps.clear()
         if not self.modes:
-            return cheapest(self.costs, self.tables, frozenset(self.forbidden), self.gaps, self.tangled)
+            return self._cheapest(self.costs)
         best: tuple[int, ...] | None = None
         for masks in self.modes:
             costs = [np.where(mask, cost, np.inf) for mask, cost in zip(masks, self.costs, strict=True)]
             if best is None or sum(float(cost.min()) for cost in costs) < self.weight(best):
-                picked = cheapest(costs, self.tables, frozenset(self.forbidden), self.gaps, self.tangled)
+                picked = self._cheapest(costs)
                 if picked is not None and (best is None or self.weight(picked) < self.weight(best)):
                     best = picked
         return best
+
+    def _cheapest(self, costs: list[Array]) -> tuple[int, ...] | None:
+        self.work.charge(SEARCHING * len(costs))
+        return cheapest(costs, self.tables, frozenset(self.forbidden), self.gaps, self.tangled, self.work)
 
     def holds(self, places: Mapping[str, Place]) -> tuple[int, ...] | None:
         """The choice of these lanes and windows, or None where it is not whole or something is against it here."""

@@ -14,6 +14,7 @@ from foldfab.folding.model import Thickness
 from foldfab.folding.site import Site
 from foldfab.folding.tree import UnitTree
 from foldfab.folding.units import Unit
+from foldfab.folding.work import Work
 from foldfab.geometry.arrays import Array
 from foldfab.geometry.boxes import Boxes
 from foldfab.recipe.model import FoldOptions, Part
@@ -56,8 +57,8 @@ class Problem:
     """Conflict graphs of units that were estimated but not folded yet, by the same."""
     hopeless: dict[Unit, str] = field(default_factory=dict)
     """Units that cannot fold wherever they stand, and why."""
-    plays: list[int] = field(default_factory=list)
-    """How many patches were played through, unit by unit: a measure of work."""
+    work: Work = field(default_factory=Work)
+    """What may be done to solve it, and what has been done."""
     extents: dict[bytes, tuple[float, float]] = field(default_factory=dict)
     """By direction, between which coordinates the open furniture lies, mm."""
 

@@ -20,6 +20,7 @@ from foldfab.folding.scene import Scene
 from foldfab.folding.simulate import clashes
 from foldfab.folding.surroundings import Surroundings
 from foldfab.folding.units import Unit
+from foldfab.folding.work import PLAYING
 
 THICKEST = 1.5
 """Panels may be this many times as thick as the others where that closes a stack flat."""
@@ -66,7 +67,7 @@ def _played(
     chains: tuple[Chain, ...], way: Mapping[str, float],
 ) -> tuple[tuple[Chain, ...], Motion] | Clash:  # fmt: skip
     """The chains with their motion, or what meets while they fold."""
-    problem.plays.append(len(unit.patches))
+    problem.work.charge(PLAYING * len(unit.patches))
     is_slanted = any(c.mechanism == "slanted" and c.far is not None for c in chains)
     motion = (
         press.slanted(unit.bases, chains)

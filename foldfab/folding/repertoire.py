@@ -23,6 +23,7 @@ from foldfab.folding.problem import Problem, extent, variants
 from foldfab.folding.site import Site
 from foldfab.folding.space import Batch, joined, still
 from foldfab.folding.units import Unit
+from foldfab.folding.work import SWEEPING
 from foldfab.geometry.arrays import Array, Bools
 from foldfab.geometry.boxes import Boxes, bounds, moved
 
@@ -220,6 +221,7 @@ def _made(problem: Problem, own: Repertoire, site: Site, variant: Variant) -> La
         *_with_far_base(problem, chain, low, high),
     )  # fmt: skip
     own.lanes.append(found)
+    problem.work.charge(SWEEPING)
     return found
 
 

@@ -67,7 +67,7 @@ def test_nor_is_one_where_the_search_is_handed_over(limit: int, widest: int, ins
 
 def test_both_ways_to_search_are_taken(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[int] = []
-    monkeypatch.setattr(choose, "proven", lambda alive, *_: (asked.append(len(alive)), (None, 0.0))[1])
+    monkeypatch.setattr(choose, "proven", lambda alive, *_: (asked.append(len(alive)), (None, 0.0, 0.0))[1])
     costs = [np.array([0.0, 1.0]), np.array([0.0, 0.4])]
     conflicts = {(0, 1): np.array([[True, False], [False, False]])}
     cheapest(costs, conflicts)

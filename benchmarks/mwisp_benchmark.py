@@ -103,7 +103,7 @@ class ConflictGraph:
         if picked is None:
             return True
         clear = not any(m[picked[g], picked[h]] for (g, h), m in self.conflicts.items())
-        return clear and not any(all(picked[g] == o for g, o in many) for many in self.forbidden)
+        return clear and not any(all(picked[g] in held for g, held in many) for many in self.forbidden)
 
 
 def main() -> int:
@@ -263,8 +263,7 @@ def by_cp_sat(graph: ConflictGraph) -> Picked:
     for clique in graph.cliques():
         model.add_at_most_one(on[node] for node in clique)
     for many in graph.forbidden:
-        if all(node in on for node in many):
-            model.add_bool_or(~on[node] for node in many)
+        model.add(sum(sum(on[g, o] for o in held if (g, o) in on) for g, held in many) <= len(many) - 1)
     model.minimize(sum(round(float(graph.costs[g][o]) * UNITS_PER_COST) * var for (g, o), var in on.items()))
     solver = cp_model.CpSolver()
     solver.parameters.num_workers = 1
@@ -283,14 +282,14 @@ def by_highs(graph: ConflictGraph) -> Picked:
     place = {node: i for i, node in enumerate(nodes)}
     exact = [[place[g, int(o)] for o in own] for g, own in enumerate(graph.alive)]
     most = [[place[node] for node in clique] for clique in graph.cliques()]
-    never = [[place[node] for node in many] for many in graph.forbidden if all(node in place for node in many)]
+    never = [[place[g, o] for g, held in many for o in held if (g, o) in place] for many in graph.forbidden]
     rows = [*exact, *most, *never]
     program = highspy.HighsLp()
     program.num_col_, program.num_row_ = len(nodes), len(rows)
     program.col_cost_ = np.array([graph.costs[g][o] for g, o in nodes])
     program.col_lower_, program.col_upper_ = np.zeros(len(nodes)), np.ones(len(nodes))
     program.row_lower_ = np.array([1.0] * len(exact) + [-highspy.kHighsInf] * (len(most) + len(never)))
-    program.row_upper_ = np.array([1.0] * (len(exact) + len(most)) + [len(many) - 1.0 for many in never])
+    program.row_upper_ = np.array([1.0] * (len(exact) + len(most)) + [len(many) - 1.0 for many in graph.forbidden])
     program.a_matrix_.format_ = highspy.MatrixFormat.kRowwise
     program.a_matrix_.start_ = np.cumsum([0, *map(len, rows)])
     program.a_matrix_.index_ = np.concatenate([np.array(row) for row in rows])

@@ -4,6 +4,7 @@ FoldfabError                 one clear message; `exit_status` is what the comman
 ├── RecipeError              bad input: every problem at once, each with its place (status 2)
 ├── AbstractionError         the furniture has no scaffold along this direction (status 1)
 ├── FoldingError             no valid folding solution (status 1)
+│   └── LossError            none that loses as little as was asked for
 ├── FabricationError         the solids would not work: the findings that say so (status 1)
 ├── SlicingError             the slicer makes nothing of a print file (status 1)
 ├── PrintFolderError         a print folder that cannot be read or written (status 2)
@@ -59,6 +60,14 @@ class AbstractionError(FoldfabError):
 
 class FoldingError(FoldfabError):
     """A scaffold for which no valid folding solution exists; the message says what stands in the way."""
+
+
+class LossError(FoldingError):
+    """More patches would have to go than was asked for."""
+
+    def __init__(self, gone: int) -> None:
+        self.gone = gone
+        super().__init__(f"no folding solution: at least {gone} parts would have to go")
 
 
 class FabricationError(FoldfabError):

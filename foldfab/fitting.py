@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from foldfab.errors import AbstractionError, FoldingError
+from foldfab.errors import AbstractionError, FoldingError, LossError
+from foldfab.folding.work import Work
 from foldfab.geometry.arrays import Array
 from foldfab.recipe.hinges import hinge_problem
 from foldfab.recipe.model import Posture, Recipe
@@ -23,6 +24,8 @@ THINNER = (3.0, 2.0)
 """Thicknesses of plates that are tried where thicker ones do not fold, mm; thinner ones do not print."""
 HELD_SHARE = 0.125
 """A hinge holds where its clearance is at most this share of its plates' thickness."""
+LEAST_SHARE = 0.25
+"""Share of the time limit that each thickness of plates gets in any case."""
 SCALE_ROUNDS = 6
 """How often the scale of a print is reduced until it fits the bed."""
 
@@ -37,26 +40,52 @@ def along(recipe: Recipe, direction: Array) -> FoldSolution:
         FoldingError: nothing folds, or it does not fit.
     """
     if not recipe.print.may_thin:
-        return _fitted(recipe, direction)
-    found: list[FoldSolution] = []
-    refused: FoldingError | None = None
-    for panel in _thicknesses(recipe):
-        try:
-            found.append(_fitted(_with_plates(recipe, panel), direction))
-        except FoldingError as error:
-            refused = error
-        else:
-            if not _gone(found[-1]):
-                break
-    if not found:
-        assert refused is not None
-        raise refused
+        return _fitted(recipe, direction, Work(recipe.fold.time_limit))
+    found, loses = _by_thickness(recipe, direction)
     best = min(found, key=_gone)
     if best.scaffold.recipe.print.thickness == recipe.print.thickness:
         return best
-    lost = "parts would have to go" if len(found) > 1 else "it would not fold"
+    lost = "parts would have to go" if loses else "it would not fold"
     why = f"plates are {best.thickness.panel:g} mm thick because with thicker ones {lost}"
     return replace(best, notes=(*best.notes, why))
+
+
+def _by_thickness(recipe: Recipe, direction: Array) -> tuple[list[FoldSolution], bool]:
+    """Solutions with thinner and thinner plates until all of it folds, thicker ones first and at least one; and whether
+    parts have to go with thicker ones.
+
+    Where parts have to go in any case, it is solved only once thinner plates are known to spare none of them.
+    """
+    found: dict[float, FoldSolution] = {}
+    put_off: dict[float, int] = {}
+    refused: list[FoldingError] = []
+
+    limit = left = recipe.fold.time_limit
+
+    def attempt(panel: float, most: int | None, worth: int | None) -> None:
+        nonlocal left
+        work = Work(max(left, LEAST_SHARE * limit))
+        try:
+            found[panel] = _fitted(_with_plates(recipe, panel), direction, work, most, worth)
+        except LossError as error:
+            put_off[panel] = error.gone
+        except FoldingError as error:
+            refused.append(error)
+        left -= work.spent
+
+    for panel in _thicknesses(recipe):
+        least = min(map(_gone, found.values()), default=1)
+        attempt(panel, least - 1, least - 1 if found else None)
+        if panel in found and not _gone(found[panel]):
+            break
+    for gone, panel in sorted((gone, -panel) for panel, gone in put_off.items()):
+        least, best = min(((_gone(s), -k) for k, s in found.items()), default=(len(recipe.parts), 0.0))
+        # What loses as much is better with thicker plates.
+        if (gone, panel) < (least, best):
+            attempt(-panel, least, least)
+    if not found:
+        raise refused[-1]
+    return [found[panel] for panel in sorted(found, reverse=True)], len(found) > 1 or bool(put_off)
 
 
 def _thicknesses(recipe: Recipe) -> tuple[float, ...]:
@@ -75,16 +104,21 @@ def _gone(solution: FoldSolution) -> int:
     return sum(m.is_deleted for m in solution.modifications)
 
 
-def _fitted(recipe: Recipe, direction: Array) -> FoldSolution:
+def _fitted(
+    recipe: Recipe, direction: Array, work: Work, most: int | None = None, worth: int | None = None
+) -> FoldSolution:
+    """The solution with plates as they are; `work`, `most` and `worth` as in `foldfab.folding.solve`."""
     from foldfab.fabrication.room import share_of_bed
     from foldfab.folding.solve import solve
 
     posture = settled_posture(recipe)
     if recipe.print.scale is not None:
-        return _standing(solve(abstracted(recipe, direction, recipe.print.scale)), posture)
+        return _standing(solve(abstracted(recipe, direction, recipe.print.scale), work, most, worth), posture)
     scale = _fitting_scale(recipe, direction, posture)
     for _ in range(SCALE_ROUNDS):
-        solution = _standing(solve(abstracted(recipe, direction, scale)), posture)
+        round_work = Work(work.limit)
+        solution = _standing(solve(abstracted(recipe, direction, scale), round_work, most, worth), posture)
+        work.charge(round_work.spent)
         share = share_of_bed(solution, posture)
         if share <= 1.0:
             return solution

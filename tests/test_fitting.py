@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from foldfab import fitting
-from foldfab.errors import FoldingError
+from foldfab.errors import FoldingError, LossError
 from foldfab.fitting import along
 from foldfab.folding.model import FoldSolution
+from foldfab.folding.work import Work
 from foldfab.geometry.arrays import Array
 from foldfab.recipe.model import FoldOptions, Part, PrintOptions, Recipe
 from foldfab.recipe.printers import DEFAULT_PRINTER
@@ -78,8 +80,8 @@ def test_plates_are_thinned_so_that_nothing_has_to_go(
     """Where even the thinnest plates spare no part, they stay as thick as usual."""
     fitted = fitting._fitted
 
-    def losing(recipe: Recipe, direction: Array) -> FoldSolution:
-        found = fitted(recipe, direction)
+    def losing(recipe: Recipe, direction: Array, *rest: Any) -> FoldSolution:
+        found = fitted(recipe, direction, *rest)
         gone = tuple(replace(m, mechanism="deleted") for m in found.modifications)
         return found if recipe.print.thickness in whole_at else replace(found, modifications=gone)
 
@@ -88,3 +90,47 @@ def test_plates_are_thinned_so_that_nothing_has_to_go(
     assert solution.thickness.panel == panel
     why = f"plates are {panel:g} mm thick because with thicker ones parts would have to go"
     assert (why in solution.notes) == (panel < 4.0)
+
+
+@pytest.mark.parametrize(("lost", "tried", "panel"), [
+    ({4.0: 1, 3.0: 0}, [4.0, 3.0], 3.0),
+    ({4.0: 2, 3.0: 1, 2.0: 1}, [4.0, 3.0, 2.0, 3.0], 3.0),
+    ({4.0: 1, 3.0: 1, 2.0: 1}, [4.0, 3.0, 2.0, 4.0], 4.0),
+])  # fmt: skip
+def test_plates_that_certainly_cost_parts_are_looked_at_last(
+    low_table: Callable[..., Recipe], monkeypatch: pytest.MonkeyPatch, lost: dict[float, int], tried: list[float],
+    panel: float,
+) -> None:  # fmt: skip
+    """And only where thinner ones spare no part, or none of them folds at all."""
+    fitted, asked = fitting._fitted, []
+
+    def losing(recipe: Recipe, direction: Array, work: Work, most: int | None, worth: int | None) -> FoldSolution:
+        asked.append(recipe.print.thickness)
+        gone = lost[recipe.print.thickness]
+        if gone > (most or 0):
+            raise LossError(gone)
+        found = fitted(recipe, direction, work)
+        changed = tuple(replace(m, mechanism="deleted") for m in found.modifications[:gone])
+        return replace(found, modifications=changed + found.modifications[gone:])
+
+    monkeypatch.setattr(fitting, "_fitted", losing)
+    solution = along(low_table(40.0), DOWN)
+    assert asked == tried and solution.thickness.panel == panel
+    why = f"plates are {panel:g} mm thick because with thicker ones parts would have to go"
+    assert (why in solution.notes) == (panel < 4.0)
+
+
+def test_all_thicknesses_share_the_time_limit(
+    low_table: Callable[..., Recipe], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    limits = []
+
+    def losing(recipe: Recipe, direction: Array, work: Work, *_: int | None) -> FoldSolution:
+        limits.append(work.limit)
+        work.charge(1.4)
+        raise FoldingError("no")
+
+    monkeypatch.setattr(fitting, "_fitted", losing)
+    with pytest.raises(FoldingError, match="no"):
+        along(low_table(40.0), DOWN)
+    assert limits == pytest.approx([2.0, 0.6, 0.5])

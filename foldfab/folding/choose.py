@@ -21,6 +21,7 @@ import numpy as np
 
 from foldfab.folding.eliminate import eliminated
 from foldfab.folding.exact import proven
+from foldfab.folding.work import Work
 from foldfab.geometry.arrays import Array, Bools, Indices
 
 EPSILON = 1e-12
@@ -37,8 +38,8 @@ WIDEST = 100
 Table = list[dict[int, Bools]]
 """For each group, by other group, which of their options (n, m) exclude each other."""
 
-Combination = tuple[tuple[int, int], ...]
-"""Options that must not all be taken together, each as (group, option)."""
+Combination = tuple[tuple[int, tuple[int, ...]], ...]
+"""Groups that must not all take one of some options of theirs."""
 
 
 def cheapest(
@@ -47,15 +48,17 @@ def cheapest(
     forbidden: frozenset[Combination] = frozenset(),
     gaps: list[float] | None = None,
     tangled: set[tuple[int, ...]] | None = None,
+    work: Work | None = None,
 ) -> tuple[int, ...] | None:
     """The option of each group in the cheapest conflict-free choice, or None where there is none.
 
     Args:
         costs: for each group, the costs (n,) of its options; infinite where an option is out of the question.
         conflicts: by groups (g, h) with g < h, which options (n_g, n_h) exclude each other; a missing pair has none.
-        forbidden: combinations of (group, option) that must not all be taken together.
+        forbidden: what must not all be taken together.
         gaps: gets by how much the choice may be dearer than the cheapest one, where the work did not suffice to tell.
         tangled: gets the groups that plain branch and bound gave up on, and says on which it need not be tried again.
+        work: is charged for what CP-SAT does.
     """
     least = tuple(int(c.argmin()) for c in costs)
     if not all(math.isfinite(c[i]) for c, i in zip(costs, least, strict=True)):
@@ -63,19 +66,16 @@ def cheapest(
     if _go_together(least, conflicts, forbidden):
         return least
     table = _by_group(len(costs), conflicts)
-    held = _held(len(costs), forbidden)
-    alive = [_undominated(costs[g], table[g], held[g]) for g in range(len(costs))]
+    held = _held(costs, forbidden)
+    alive = [_undominated(costs[g], [*table[g].values(), *held[g]]) for g in range(len(costs))]
     taken: dict[int, int] = {}
     for groups in _islands(alive, table, forbidden):
-        if len(groups) == 1 and not held[groups[0]]:
-            price = np.where(alive[groups[0]], costs[groups[0]], np.inf)
-            best: dict[int, int] | None = {groups[0]: int(np.argmin(price))} if np.isfinite(price).any() else None
-        else:
-            best, gap = _solved(
-                {g: alive[g] for g in groups}, costs, table, forbidden, tangled if tangled is not None else set()
-            )
-            if gaps is not None and gap > 0:
-                gaps.append(gap)
+        own = {g: alive[g] for g in groups}
+        best, gap, spent = _solved(own, costs, table, forbidden, tangled if tangled is not None else set())
+        if work is not None:
+            work.charge(spent)
+        if gaps is not None and gap > 0:
+            gaps.append(gap)
         if best is None:
             return None
         taken.update(best)
@@ -87,7 +87,7 @@ def _go_together(
 ) -> bool:
     """Whether no two options of a choice exclude each other, and no combination of them is forbidden."""
     return not any(table[picked[g], picked[h]] for (g, h), table in conflicts.items()) and not any(
-        all(picked[g] == option for g, option in combination) for combination in forbidden
+        all(picked[g] in options for g, options in combination) for combination in forbidden
     )
 
 
@@ -99,42 +99,40 @@ def _by_group(count: int, conflicts: Mapping[tuple[int, int], Bools]) -> Table:
     return table
 
 
-def _held(count: int, forbidden: frozenset[Combination]) -> list[list[int]]:
-    """For each group, its options that belong to a forbidden combination."""
-    held: list[list[int]] = [[] for _ in range(count)]
-    for combination in forbidden:
-        for g, option in combination:
-            held[g].append(option)
+def _held(costs: list[Array], forbidden: frozenset[Combination]) -> list[list[Bools]]:
+    """For each group, which of its options (n, 1) belong to each forbidden combination that it takes part in."""
+    held: list[list[Bools]] = [[] for _ in costs]
+    for combination in sorted(forbidden):
+        for g, options in combination:
+            held[g].append(np.isin(np.arange(len(costs[g])), options)[:, None])
     return held
 
 
-def _undominated(price: Array, conflicts: Mapping[int, Bools], held: list[int]) -> Bools:
+def _undominated(price: Array, conflicts: list[Bools]) -> Bools:
     """Which options (n,) of a group are worth looking at: none that is no dearer excludes no more.
 
-    An option that belongs to a forbidden combination may have to give way to one that it would dominate.
+    To belong to a forbidden combination is to exclude something as well.
     """
     alive: Bools = np.isfinite(price)
     rest = np.nonzero(alive)[0]
     rest = rest[np.argsort(price[rest], kind="stable")]
-    free = np.ones(len(price), dtype=bool)
-    free[held] = False
-    excludes = np.concatenate([np.zeros((len(rest), 1), dtype=bool), *(m[rest] for m in conflicts.values())], axis=1)
-    if len(rest) and free[rest[0]] and not excludes[0].any():
+    excludes = np.concatenate([np.zeros((len(rest), 1), dtype=bool), *(m[rest] for m in conflicts)], axis=1)
+    if len(rest) and not excludes[0].any():
         # The cheapest option of all excludes nothing: it dominates every other one.
         alive[rest[1:]] = False
         return alive
-    alive[rest[_dominated(excludes, free[rest])]] = False
+    alive[rest[_dominated(excludes)]] = False
     return alive
 
 
-def _dominated(excludes: Bools, free: Bools) -> Bools:
-    """Which options (n,), cheapest first, one before them dominates: it is free, and excludes (n, m) no more."""
+def _dominated(excludes: Bools) -> Bools:
+    """Which options (n,), cheapest first, one before them dominates, as it excludes (n, m) no more."""
     # What is dominated dominates nothing that its own dominator does not.
     dominators: list[int] = []
     found = np.zeros(len(excludes), dtype=bool)
-    for i, (own, is_free) in enumerate(zip(_sets(excludes), free.tolist(), strict=True)):
+    for i, own in enumerate(_sets(excludes)):
         found[i] = any(not other & ~own for other in dominators)
-        if is_free and not found[i]:
+        if not found[i]:
             dominators.append(own)
     return found
 
@@ -164,19 +162,20 @@ def _islands(alive: list[Bools], table: Table, forbidden: frozenset[Combination]
 def _solved(
     alive: Mapping[int, Bools], costs: list[Array], table: Table, forbidden: frozenset[Combination],
     tangled: set[tuple[int, ...]],
-) -> tuple[dict[int, int] | None, float]:  # fmt: skip
+) -> tuple[dict[int, int] | None, float, float]:  # fmt: skip
+    """The best option for each group, by how much it may be too dear, and the charge for CP-SAT."""
     groups = set(alive)
     own = [c for c in forbidden if {g for g, _ in c} <= groups]
     if len(groups) > FEW and not own:
         found = eliminated(alive, costs, table)
         if found is not None:
-            return found, 0.0
+            return found, 0.0, 0.0
     best: dict[int, int] | None = None
     if len(groups) <= WIDEST:
         search = _Search(alive, costs, table, own, SHORT if tuple(alive) in tangled else LIMIT)
         best = search.found()
         if search.left >= 0:
-            return best, 0.0
+            return best, 0.0, 0.0
         tangled.add(tuple(alive))
     return proven(alive, costs, table, sorted(own), best)
 
@@ -198,14 +197,14 @@ class _Search:
             for g, own in self.options.items()
         }
         """By group and other group, for each option of the one which options of the other it excludes."""
-        place = {g: {int(o): i for i, o in enumerate(own)} for g, own in self.options.items()}
-        self.forbidden: dict[tuple[int, int], list[Combination]] = {}
-        """By group and option, the forbidden combinations that it belongs to."""
+        self.forbidden: dict[tuple[int, int], list[dict[int, int]]] = {}
+        """By group and option, the forbidden combinations that it belongs to: by group, the options that it is of."""
         for combination in sorted(forbidden):
-            if all(option in place[g] for g, option in combination):
-                placed = tuple((g, place[g][option]) for g, option in combination)
-                for member in placed:
-                    self.forbidden.setdefault(member, []).append(placed)
+            held = {g: np.isin(self.options[g], options) for g, options in combination}
+            together = {g: _sets(own[None])[0] for g, own in held.items()}
+            for g, own in held.items():
+                for option in np.nonzero(own)[0].tolist():
+                    self.forbidden.setdefault((g, option), []).append(together)
         self.left = limit
         self.best: dict[int, int] | None = None
         self.bound = np.inf
@@ -236,8 +235,9 @@ class _Search:
 
     def _descend(self, alive: dict[int, int], taken: dict[int, int], spent: float, group: int, option: int) -> None:
         now = {**taken, group: option}
-        if any(all(now.get(g) == o for g, o in others) for others in self.forbidden.get((group, option), ())):
-            return
+        for together in self.forbidden.get((group, option), ()):
+            if all(g in now and held >> now[g] & 1 for g, held in together.items()):
+                return
         left = {}
         for other, options in alive.items():
             if other != group:

@@ -12,26 +12,27 @@ from typing import Any
 
 import numpy as np
 
+from foldfab.folding.work import ENGINE, STARTING
 from foldfab.geometry.arrays import Array, Bools
 
 UNITS_PER_COST = 1e8
 """Costs are rounded to integers of this resolution."""
-WORK = 2.0
+WORK = 1.0
 """Deterministic time after which the best choice so far is taken."""
 
 
 def proven(
     alive: Mapping[int, Bools], costs: list[Array], table: list[dict[int, Bools]],
-    forbidden: list[tuple[tuple[int, int], ...]], known: Mapping[int, int] | None,
-) -> tuple[dict[int, int] | None, float]:  # fmt: skip
-    """The cheapest option for each group, or None where there is no choice without conflicts, and by how much it may be
-    dearer than the cheapest where the work did not suffice to tell.
+    forbidden: list[tuple[tuple[int, tuple[int, ...]], ...]], known: Mapping[int, int] | None,
+) -> tuple[dict[int, int] | None, float, float]:  # fmt: skip
+    """The cheapest option for each group, or None where there is no choice without conflicts; by how much it may be
+    dearer than the cheapest where the work did not suffice to tell; and the charge for that, s.
 
     Args:
         alive: by group, which of its options (n,) may be taken.
         costs: for each group, the costs (n,) of its options.
         table: for each group, by other group, which of their options (n_g, n_h) exclude each other.
-        forbidden: combinations of (group, option) that must not all be taken together.
+        forbidden: groups that must not all take one of some options of theirs.
         known: the best choice known, to start from.
     """
     from ortools.sat.python import cp_model
@@ -47,26 +48,37 @@ def proven(
             if len(others):
                 model.add_at_most_one([on[g, int(o)], *(on[h, int(p)] for p in others)])
     for combination in forbidden:
-        if all(key in on for key in combination):
-            model.add_bool_or([~on[key] for key in combination])
+        taken = [sum(on[g, o] for o in options if (g, o) in on) for g, options in combination]
+        model.add(sum(taken) <= len(taken) - 1)
     model.minimize(sum(round(float(costs[g][o]) * UNITS_PER_COST) * var for (g, o), var in on.items()))
     for key in (known or {}).items():
         model.add_hint(on[key], True)
-    return _solved(model, on, costs, known)
+    return (*_solved(model, solver := _engine(), on, costs, known), _charge(solver))
 
 
-def _solved(
-    model: Any, on: Mapping[tuple[int, int], Any], costs: list[Array], known: Mapping[int, int] | None
-) -> tuple[dict[int, int] | None, float]:
+def _engine() -> Any:
     from ortools.sat.python import cp_model
 
     solver = cp_model.CpSolver()
     solver.parameters.num_workers = 1
     solver.parameters.random_seed = 0
-    # Probing thousands of options that exclude each other would take all the work; the relaxation needs hardly any.
-    solver.parameters.cp_model_probing_level = 0
+    # What presolve finds in thousands of options that exclude each other takes longer than all the rest; the relaxation
+    # is what helps.
+    solver.parameters.cp_model_presolve = False
     solver.parameters.linearization_level = 2
     solver.parameters.max_deterministic_time = WORK
+    return solver
+
+
+def _charge(solver: Any) -> float:
+    return STARTING + ENGINE * float(solver.response_proto.deterministic_time)
+
+
+def _solved(
+    model: Any, solver: Any, on: Mapping[tuple[int, int], Any], costs: list[Array], known: Mapping[int, int] | None
+) -> tuple[dict[int, int] | None, float]:
+    from ortools.sat.python import cp_model
+
     status = solver.solve(model)
     if status == cp_model.INFEASIBLE:
         return None, 0.0

@@ -13,14 +13,15 @@ from foldfab.folding.options import options_of
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import Prospects
 from foldfab.folding.realise import Clash
-from foldfab.folding.repertoire import Lane, Repertoire
+from foldfab.folding.repertoire import Place, Repertoire
 from foldfab.folding.symmetry import bound, signature, unlike
+from foldfab.folding.work import SEARCHING
 from foldfab.geometry.arrays import Array, Bools
 
 MANY = 16
 """Patches of a unit beyond which each way to drag its bases is looked at by itself, and not every pair of patches."""
 
-Lesson = tuple[Clash, tuple[tuple[Lane, tuple[int, int]] | None, ...]]
+Lesson = tuple[Clash, tuple[Place | None, ...]]
 """A clash and what was chosen for each patch of the unit."""
 
 
@@ -36,7 +37,7 @@ class Graph:
         learned: Iterable[Lesson] = (),
         chosen: Mapping[str, Option] | None = None,
     ) -> None:
-        self.patches = own.unit.patches
+        self.patches, self.work = own.unit.patches, problem.work
         options = options_of(problem, found, offset)
         self.options = [options[p] for p in self.patches]
         self.costs: list[Array] = [o.weight.copy() for o in self.options]
@@ -80,15 +81,29 @@ class Graph:
         """The cheapest choice, one option a patch."""
         self.gaps.clear()
         if not self.modes:
-            return cheapest(self.costs, self.tables, frozenset(self.forbidden), self.gaps, self.tangled)
+            return self._cheapest(self.costs)
         best: tuple[int, ...] | None = None
         for masks in self.modes:
             costs = [np.where(mask, cost, np.inf) for mask, cost in zip(masks, self.costs, strict=True)]
             if best is None or sum(float(cost.min()) for cost in costs) < self.weight(best):
-                picked = cheapest(costs, self.tables, frozenset(self.forbidden), self.gaps, self.tangled)
+                picked = self._cheapest(costs)
                 if picked is not None and (best is None or self.weight(picked) < self.weight(best)):
                     best = picked
         return best
+
+    def _cheapest(self, costs: list[Array]) -> tuple[int, ...] | None:
+        self.work.charge(SEARCHING * len(costs))
+        return cheapest(costs, self.tables, frozenset(self.forbidden), self.gaps, self.tangled, self.work)
+
+    def holds(self, places: Mapping[str, Place]) -> tuple[int, ...] | None:
+        """The choice of these lanes and windows, or None where it is not whole or something is against it here."""
+        if any(places.get(o.patch, (None,))[0] not in o.lanes for o in self.options):
+            return None
+        picked = tuple(o.index(places[o.patch]) for o in self.options)
+        is_free = all(np.isfinite(cost[i]) for cost, i in zip(self.costs, picked, strict=True))
+        is_free &= not any(table[picked[g], picked[h]] for (g, h), table in self.tables.items())
+        is_free &= not any(all(picked[g] in many for g, many in combination) for combination in self.forbidden)
+        return picked if is_free else None
 
     def promising(self, prices: Mapping[str, float]) -> list[str]:
         """The patches with lanes not made yet that could be part of a choice cheaper than all known ones.
@@ -101,15 +116,15 @@ class Graph:
         for g, end in last.items():
             costs[g][end] = prices[self.patches[g]]
         tables = {pair: _without_last(table, pair, last) for pair, table in self.tables.items()}
-        forbidden = frozenset(c for c in self.forbidden if not any(last.get(g) == option for g, option in c))
+        forbidden = frozenset(c for c in self.forbidden if not any(last.get(g) in many for g, many in c))
         gaps: list[float] = []
-        picked = cheapest(costs, tables, forbidden, gaps)
+        picked = cheapest(costs, tables, forbidden, gaps, work=self.work)
         if picked is None or gaps:
             return [self.patches[g] for g in last]
         return [self.patches[g] for g, end in last.items() if picked[g] == end]
 
     def _undragged(self, group: int) -> Array:
-        """What the options of a patch cost beside lanes not made yet: those come straight down, and none drags along."""
+        """What the options of a patch cost beside lanes not made yet: those come straight down, none drags along."""
         options = self.options[group]
         drags = np.repeat([x.drag is not None for x in options.lanes], len(options.windows))
         return np.where(np.append(drags, False), np.inf, self.costs[group])
@@ -130,10 +145,14 @@ class Graph:
     def learn(self, picked: tuple[int, ...], clash: Clash) -> None:
         """Adds what a simulation found: what is too wide for its neighbours is so when it is still wider."""
         self.learned.append((clash, tuple(o.place(i) for o, i in zip(self.options, picked, strict=True))))
+        for one in (clash, *clash.also):
+            self._learn(picked, one)
+
+    def _learn(self, picked: tuple[int, ...], clash: Clash) -> None:
         place = {p: g for g, p in enumerate(self.patches)}
         for patches in clash.patches:
             groups = sorted(place[p] for p in patches)
-            alike = [self._alike(g, picked[g], clash) for g in groups]
+            alike = [self.options[g].like(picked[g], clash.holds_for, clash.depth) for g in groups]
             if len(groups) == 1:
                 self.costs[groups[0]][alike[0]] = np.inf
             elif len(groups) == 2:
@@ -143,14 +162,7 @@ class Graph:
                 own[np.ix_(*alike)] = True
                 self.tables[g, h] = own
             else:
-                self.forbidden.add(tuple((g, picked[g]) for g in groups))
-
-    def _alike(self, group: int, index: int, clash: Clash) -> list[int]:
-        """The options of a patch that a clash of the one at `index` rules out as well."""
-        options = self.options[group]
-        if clash.holds_for == "this" or index == len(options.price) - 1:
-            return [index]
-        return options.like(index, wider=clash.holds_for == "wider windows")
+                self.forbidden.add(tuple((g, tuple(many)) for g, many in zip(groups, alike, strict=True)))
 
 
 def _without_last(table: Bools, pair: tuple[int, int], last: Mapping[int, int]) -> Bools:

@@ -27,21 +27,20 @@ BETTER = 1e-5
 """By how much an order must be cheaper."""
 
 
-def improved(problem: Problem, known: Ordered, choices: Mapping[str, Choice], work: float) -> Ordered:
+def improved(problem: Problem, known: Ordered, choices: Mapping[str, Choice]) -> Ordered:
     """An order that counts less than the one known, or that one.
 
     Args:
         problem: the scaffold and its units.
         known: a greedy order.
         choices: the cheapest choice of each unit by itself.
-        work: how many patches may be played through before nothing more is tried.
     """
-    banned, most = problem.banned, sum(problem.plays) + work
+    banned = problem.banned
     for _ in range(ROUNDS):
         blamed = list(dict.fromkeys(_blamed(problem, open_scene(problem), known, choices)))[:TRIES]
         found = []
         for ban in blamed:
-            order = _under(problem, banned | {ban}) if sum(problem.plays) < most else None
+            order = _under(problem, banned | {ban}) if problem.work.left > 0 else None
             found += [(order, ban)] if order is not None else []
         if not found or weight(min(found, key=lambda f: weight(f[0]))[0]) > weight(known) - BETTER:
             break

@@ -13,7 +13,7 @@ import numpy as np
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.group import Group, Lesson, Place, place_of
 from foldfab.folding.master import Order, Proposal
-from foldfab.folding.options import Options
+from foldfab.folding.options import Alike, Options
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import Prospects, leaves_the_box
 from foldfab.folding.realise import Clash
@@ -107,11 +107,11 @@ def lessons_of(
     problem, found = group.problem, []
     lies_low = any(np.isfinite(flat) for flat, _, _ in around.limits.values())
     for k, patches in enumerate(clash.patches):
-        held = [(p, _alike(options[p], proposal.chosen[p], clash.holds_for)) for p in patches]
+        held = [(p, _alike(options[p], proposal.chosen[p], clash.holds_for, clash.depth)) for p in patches]
         met = clash.met[k] if clash.met else ()
         strangers = [o for o in met if o in problem.unit_of and problem.unit_of[o] is not unit and o in options]
         # A stranger may get out of the way of what is dragged along by being narrowed.
-        wide = "this" if clash.holds_for == "this" else "wider windows"
+        wide: Alike = "this" if clash.holds_for == "this" else "wider windows"
         held += [(q, _alike(options[q], proposal.chosen[q], wide)) for q in strangers]
         deciding = {problem.unit_of[q].name for q in strangers}
         for owner in met:
@@ -125,6 +125,8 @@ def lessons_of(
             held += [(q, frozenset([None])) for q in sorted(scene.gone & set(options))]
             deciding = set()
         found.append(Lesson(tuple(held), _as_it_is(group, unit, deciding, done)))
+    for other in clash.also:
+        found += lessons_of(group, scene, unit, around, options, proposal, done, other)
     return found
 
 
@@ -142,8 +144,6 @@ def _on_the_way(scene: Scene, unit: Unit, around: Surroundings, owner: str) -> s
     return found
 
 
-def _alike(options: Options, index: int, holds_for: str) -> frozenset[Place]:
+def _alike(options: Options, index: int, alike: Alike, depth: float = np.inf) -> frozenset[Place]:
     """The options that a clash of one rules out as well."""
-    if holds_for == "this" or options.place(index) is None:
-        return frozenset([place_of(options, index)])
-    return frozenset(place_of(options, i) for i in options.like(index, wider=holds_for == "wider windows"))
+    return frozenset(place_of(options, i) for i in options.like(index, alike, depth))

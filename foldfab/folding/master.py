@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 
 UNITS_PER_COST = 1e8
 """Costs are rounded to integers of this resolution."""
-POSING = 2e-3
+POSING = 4e-3
 """Charge for handing a program to the engine, s; its deterministic time does not count that."""
-READING = 4e-6
+READING = 5e-6
 """Charge for each literal of a conflict that it reads, s."""
 
 Order = tuple[str, str]

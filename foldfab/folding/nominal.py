@@ -1,7 +1,8 @@
 """The nominal fold of a unit: how its bases would come down if every chain were light (section 5.4, figure 11a).
 
 The conflict graph is drawn along it, before anything is chosen. The time of the unit falls into sections, from the
-start of one base to the start of the next; each has the same number of frames.
+start of one base to the start of the next; each has the same number of frames, the first of which are for the snap of
+the accordions that start there.
 """
 
 from __future__ import annotations
@@ -17,7 +18,9 @@ from foldfab.folding.problem import Problem, clear_height, clearances, held, lev
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Array, Bools
 
-FRAMES = 17
+CLIMB = 3
+"""Instants at the start of each section at which thick accordions snap, while the bases wait."""
+FRAMES = 17 + CLIMB
 """Instants of each section at which clashes are looked for."""
 
 
@@ -43,9 +46,22 @@ def nominal(problem: Problem, unit: Unit) -> Nominal:
     marks = sorted({round(w, 6) for w in way.values()} | {0.0}, reverse=True)
     if not clear or len(marks) == 1:
         return Nominal({b: np.zeros((1, FRAMES)) for b in unit.bases})
-    turn = 1 - np.cos(np.linspace(0.0, np.pi / 2, FRAMES))
+    turn = np.append(np.zeros(CLIMB), 1 - np.cos(np.linspace(0.0, np.pi / 2, FRAMES - CLIMB)))
     level = np.array([a + (b - a) * turn for a, b in itertools.pairwise(marks)])
     return Nominal({b: np.minimum(level, way[b]) - way[b] for b in unit.bases})
+
+
+def snapped(progress: Array) -> Array:
+    """Progress (sections, FRAMES) of a chain that is past its snap wherever it is open, with the snap before its start.
+
+    All chains that start together climb together, each to its own snap.
+    """
+    found = progress.copy()
+    for section in found:
+        if section[-1] > section[0]:
+            section[:CLIMB] = np.linspace(0.0, section[0], CLIMB + 1)[:-1]
+            break
+    return found
 
 
 def _least_stack(problem: Problem, unit: Unit, pair: tuple[str, str]) -> float:

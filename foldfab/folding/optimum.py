@@ -6,7 +6,7 @@ constraint program (`master`). Its cheapest proposal is played through; what the
 options (on the order, on where things lie folded) and is added as a cut, until a proposal holds. As the program is a
 relaxation throughout, the first proposal that holds is optimal.
 
-The limit is one of work: the deterministic time of the solver, and a fixed charge for each unit that is played.
+The limit is one of work: the deterministic time of the solver, and fixed charges for what is done besides.
 """
 
 from __future__ import annotations
@@ -26,11 +26,10 @@ from foldfab.folding.replay import played
 from foldfab.folding.scene import Scene
 from foldfab.folding.symmetry import Signature
 from foldfab.folding.unit_fold import UnitFold
+from foldfab.folding.work import PLAYING
 
 NO_MORE = 1e-5
 """What preferences between options of equal cost may add up to."""
-PLAYING = 3e-3
-"""Charge for a patch that is played through, s."""
 BUILDING = 5e-2
 """Charge for a constraint program that is built, s."""
 SHARE = 0.5
@@ -38,8 +37,9 @@ SHARE = 0.5
 
 
 def optimal(
-    problem: Problem, scene: Scene, known: Ordered | None, floor: Mapping[str, float], work: float
-) -> tuple[Ordered | None, float]:
+    problem: Problem, scene: Scene, known: Ordered | None, floor: Mapping[str, float],
+    limit: float = np.inf,
+) -> tuple[Ordered | None, float]:  # fmt: skip
     """The best order that was found, and what any order counts at least.
 
     Args:
@@ -47,7 +47,7 @@ def optimal(
         scene: the open furniture.
         known: the greedy order, if there is one.
         floor: by unit, what it counts at least by itself.
-        work: the limit, in seconds of an ordinary machine.
+        limit: what an order has to count less than to be looked for.
     """
     if not np.isfinite(sum(floor.values())):
         # Some unit has no choice without conflicts at all, in whatever order.
@@ -62,10 +62,12 @@ def optimal(
     settled = [_is_settled(names, b, floor, folds if is_whole else {}) for names, b in zip(groups, best, strict=True)]
     bound = float(sum(b for b, done in zip(best, settled, strict=True) if done))
     left = [(names, b) for names, b, done in zip(groups, best, settled, strict=True) if not done]
-    for names, least in left:
+    rest_counts = bound + sum(floor[n] for names, _ in left for n in names)
+    for k, (names, least) in enumerate(left):
+        least = min(least, limit - rest_counts + sum(floor[n] for n in names))
         others = [folds[n] for n in order if n not in names] if is_whole else []
         group = _group(problem, scene, others, {n: floor[n] for n in names}, least)
-        found, group_bound = _solved(group, work / len(left))
+        found, group_bound = _solved(group, problem.work.left / (len(left) - k))
         bound += min(group_bound, least)
         if found is not None:
             rest = [n for n in order if n not in names] if is_whole else []
@@ -140,20 +142,20 @@ def _solved(group: Group, work: float) -> tuple[tuple[UnitFold, ...] | None, flo
     No folds where none is cheaper than what is known, or none was found within the work.
     """
     bound, hint = sum(group.floor.values()), None
+    done, until = group.problem.work, group.problem.work.spent + work
     best: tuple[UnitFold, ...] | None = None
-    while work > 0:
+    while done.spent < until:
         options, master = posed(group)
-        work -= BUILDING
+        done.charge(BUILDING)
         fresh, lanes = len(group.lessons), sum(map(len, group.lanes.values()))
-        while work > 0:
-            proposal, least, spent = master.solved(work * SHARE, hint)
-            work -= spent
+        while done.spent < until:
+            proposal, least, spent = master.solved((until - done.spent) * SHARE, hint)
+            done.charge(spent)
             bound = max(bound, min(least, group.known))
             if proposal is None or least >= group.known - NO_MORE:
                 return best, bound
-            before = sum(group.problem.plays)
+            done.charge(PLAYING)
             folds, holds = played(group, options, proposal)
-            work -= PLAYING * (1 + sum(group.problem.plays) - before)
             if folds is not None and _counted(folds) < group.known - NO_MORE:
                 best, group.known = folds, _counted(folds)
             if holds and folds is not None and proposal.bound >= _counted(folds) - NO_MORE:

@@ -7,7 +7,8 @@ told apart by small preferences.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
@@ -25,6 +26,9 @@ its wall because that is cheaper than a hinge. So as few patches as possible are
 cheapest is taken. The cost that is reported is the paper's."""
 PREFERENCE = 1e-6
 """Weight of the preferences that decide between options of equal cost: small plinths, staying within the outline."""
+
+Alike = Literal["this", "wider windows", "any window", "any fall"]
+"""Which options do the same as one: itself, its lane with wider windows or any, or whatever lets the base come down."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,12 +60,32 @@ class Options:
             return len(self.price) - 1
         return self.lanes.index(place[0]) * len(self.windows) + self.windows.index(place[1])
 
-    def like(self, index: int, *, wider: bool) -> list[int]:
-        """The options of the same lane, of any window, or of windows at least as wide that hold this one's."""
+    def like(self, index: int, alike: Alike, depth: float = np.inf) -> list[int]:
+        """The options that do what one does: of the same lane and of any window, or of windows that hold its own.
+
+        With "any fall" those of all lanes by which the far base comes past `depth` mm, or moves alike where that is
+        infinite.
+        """
+        if alike == "any fall":
+            return self._falling(index, depth)
+        if alike == "this" or index == len(self.price) - 1:
+            return [index]
         lane, own = divmod(index, len(self.windows))
-        low, high = self.windows[own] if wider else (len(self.windows), -1)
-        start = lane * len(self.windows)
-        return [start + w for w, (a, b) in enumerate(self.windows) if a <= low and b >= high]
+        low, high = self.windows[own] if alike == "wider windows" else (len(self.windows), -1)
+        return [lane * len(self.windows) + w for w, (a, b) in enumerate(self.windows) if a <= low and b >= high]
+
+    def _falling(self, index: int, depth: float) -> list[int]:
+        place = self.place(index)
+        if np.isfinite(depth):
+            lanes = [k for k, x in enumerate(self.lanes) if x.comes_past(depth)]
+        elif place is not None:
+            own = place[0].variant
+            lanes = [k for k, x in enumerate(self.lanes) if replace(x.variant, side=own.side) == own]
+        else:
+            return [index]
+        found = [k * len(self.windows) + w for k in lanes for w in range(len(self.windows))]
+        # Where the patch is gone, nothing keeps the base from coming down.
+        return [*found, len(self.price) - 1] if np.isfinite(depth) else found
 
 
 def options_of(problem: Problem, found: Prospects, offset: Array) -> dict[str, Options]:

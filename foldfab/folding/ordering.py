@@ -35,6 +35,7 @@ from foldfab.folding.unit_fold import (
     least_choice,
 )
 from foldfab.folding.units import Unit, merged
+from foldfab.folding.work import PLAYING
 from foldfab.geometry.arrays import Array
 from foldfab.geometry.boxes import near_pairs
 
@@ -209,12 +210,18 @@ def _best(state: _State) -> str | None:
             does_hold = fold is not None
             if fold is None:
                 break
-            change = round(_change(state, fold), DIGITS) if len(state.rest) > 1 else 0.0
+            change = round(_change(state, fold), DIGITS) if len(state.rest) > 1 and _may_look_ahead(state) else hope[0]
             found = (change, state.place[name], name)
             best = min(best, found) if best is not None else found
         # Where what was guessed does not hold, the look-ahead begins anew; guesses only ever rise.
         if does_hold:
             return best[2] if best is not None else None
+
+
+def _may_look_ahead(state: _State) -> bool:
+    """Whether there is work left for that; each patch is played once in any case, and may be so again."""
+    work = state.problem.work
+    return work.spent < work.limit + 2 * PLAYING * len(state.problem.sites)
 
 
 def _hopes(state: _State) -> list[tuple[float, int, str]]:

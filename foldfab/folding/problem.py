@@ -14,6 +14,7 @@ from foldfab.folding.model import Thickness
 from foldfab.folding.site import Site
 from foldfab.folding.tree import UnitTree
 from foldfab.folding.units import Unit
+from foldfab.folding.work import Work
 from foldfab.geometry.arrays import Array
 from foldfab.geometry.boxes import Boxes
 from foldfab.recipe.model import FoldOptions, Part
@@ -54,14 +55,14 @@ class Problem:
     """The first unit of each kind, by what it looks like wherever it stands."""
     least: dict[Unit, float] = field(default_factory=dict)
     """What the cheapest choice of each unit counts, whatever stands around it."""
-    solved: dict[object, Any] = field(default_factory=dict)
-    """Solutions of units, by all that they depend on."""
-    begun: dict[object, Any] = field(default_factory=dict)
-    """Conflict graphs of units that were estimated but not folded yet, by all that they depend on."""
+    solved: dict[tuple[Any, ...], Any] = field(default_factory=dict)
+    """Solutions of units, by all that they depend on: first the key of the surroundings, which begins with the unit."""
+    begun: dict[tuple[Any, ...], Any] = field(default_factory=dict)
+    """Conflict graphs of units that were estimated but not folded yet, by the same."""
     hopeless: dict[Unit, str] = field(default_factory=dict)
     """Units that cannot fold wherever they stand, and why."""
-    plays: list[int] = field(default_factory=list)
-    """How many patches were played through, unit by unit: a measure of work."""
+    work: Work = field(default_factory=Work)
+    """What may be done to solve it, and what has been done."""
     extents: dict[bytes, tuple[float, float]] = field(default_factory=dict)
     """By direction, between which coordinates the open furniture lies, mm."""
 
@@ -75,7 +76,17 @@ class Problem:
 
 def without(problem: Problem, banned: frozenset[tuple[str, Variant]]) -> Problem:
     """The problem with these variants banned, and nothing remembered that they could have been part of."""
-    return replace(problem, banned=banned, repertoires={}, poses={}, least={}, solved={}, begun={}, hopeless={})
+    touched = {problem.unit_of[patch] for patch, _ in banned ^ problem.banned}
+    # Units merged into one may hold any of them.
+    kept = {unit for unit in problem.units if unit not in touched}
+    return replace(
+        problem, banned=banned, poses=dict(problem.poses),
+        repertoires={unit: own for unit, own in problem.repertoires.items() if unit in kept},
+        solved={key: found for key, found in problem.solved.items() if key[0][0] in kept},
+        begun={key: found for key, found in problem.begun.items() if key[0][0] in kept},
+        least={unit: value for unit, value in problem.least.items() if unit in kept},
+        hopeless={unit: why for unit, why in problem.hopeless.items() if unit in kept},
+    )  # fmt: skip
 
 
 def variants(problem: Problem, unit: Unit, patch: str) -> tuple[Variant, ...]:

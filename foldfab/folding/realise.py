@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import networkx as nx
 import numpy as np
@@ -13,6 +12,7 @@ from foldfab.folding import basic, press
 from foldfab.folding.basic import Option, Variant
 from foldfab.folding.mechanism import peak
 from foldfab.folding.model import Chain
+from foldfab.folding.options import Alike
 from foldfab.folding.press import Motion
 from foldfab.folding.problem import Problem, clear_height, levels
 from foldfab.folding.prospects import PAD_SHARE
@@ -20,6 +20,7 @@ from foldfab.folding.scene import Scene
 from foldfab.folding.simulate import clashes
 from foldfab.folding.surroundings import Surroundings
 from foldfab.folding.units import Unit
+from foldfab.folding.work import PLAYING
 
 THICKEST = 1.5
 """Panels may be this many times as thick as the others where that closes a stack flat."""
@@ -32,12 +33,16 @@ class Clash:
     patches: tuple[tuple[str, ...], ...]
     """Sets of patches whose options must not be taken together again."""
     reason: str
-    holds_for: Literal["this", "wider windows", "any window"] = "this"
+    holds_for: Alike = "this"
     """Which other options it rules out: where parts meet, wider windows of the same patches meet as well."""
+    depth: float = np.inf
+    """How far a base has to come down for the same to happen, mm, where it depends on nothing else."""
     met: tuple[tuple[str, str], ...] = ()
     """For each of the sets, the two owners that meet; empty where nothing does."""
     cuts: bool = False
     """Whether it is about deletions that would leave the furniture in more than one piece."""
+    also: tuple[Clash, ...] = ()
+    """What else does not work, for other reasons."""
 
 
 def realised(
@@ -62,7 +67,7 @@ def _played(
     chains: tuple[Chain, ...], way: Mapping[str, float],
 ) -> tuple[tuple[Chain, ...], Motion] | Clash:  # fmt: skip
     """The chains with their motion, or what meets while they fold."""
-    problem.plays.append(len(unit.patches))
+    problem.work.charge(PLAYING * len(unit.patches))
     is_slanted = any(c.mechanism == "slanted" and c.far is not None for c in chains)
     motion = (
         press.slanted(unit.bases, chains)
@@ -78,16 +83,33 @@ def _played(
             return Clash((blamed,), f"{text}, and give {limit:.2f} mm", holds_for="any window")
     met = clashes(unit, problem.tree.number, chains, motion, around, problem.thickness)
     if met:
-        (first, second), time = next(iter(met.items()))
-        reason = f"{first} meets {second} when {100 * time:.0f} % of that fold are done"
+        reason = _told(*next(iter(met.items())))
         carried = [pair for pair in met if not set(pair) & set(chosen)]
         if carried and is_slanted:
             # What hangs on a base is dragged along with it, whatever is left of the patches that drag it.
             dragging = tuple((c.patch,) for c in chains if c.far is not None)
-            return Clash(dragging, reason, "any window", (carried[0],) * len(dragging))
-        mine = tuple(tuple(p for p in pair if p in chosen) or tuple(chosen) for pair in met)
-        return Clash(mine, reason, "wider windows", tuple(met))
+            return Clash(dragging, reason, "any window", met=(carried[0],) * len(dragging))
+        own = tuple(pair for pair in met if pair not in carried)
+        also = tuple(_carried_into(problem, unit, chains, motion, pair, met[pair]) for pair in carried[:1])
+        mine = tuple(tuple(p for p in pair if p in chosen) for pair in own)
+        return Clash(mine, reason, "wider windows", met=own, also=also)
     return chains, motion
+
+
+def _carried_into(
+    problem: Problem, unit: Unit, chains: tuple[Chain, ...], motion: Motion, pair: tuple[str, str], time: float
+) -> Clash:
+    """A clash of what hangs on two bases: it happens at the same height however the bases are brought there."""
+    holding = tuple(p for p in unit.patches if problem.sites[p].far is not None)
+    depth = -float(np.interp(time, motion.samples, motion.shift[unit.bases[-1]][:, 2]))
+    if len(unit.bases) > 2 or min(peak(c)[0] for c in chains if c.far is not None) < -depth:
+        # It depends on how the bases move against each other, or on how the chains share the rise of their snaps.
+        depth = np.inf
+    return Clash((holding,), _told(pair, time), "any fall", depth, (pair,))
+
+
+def _told(pair: tuple[str, str], time: float) -> str:
+    return f"{pair[0]} meets {pair[1]} when {100 * time:.0f} % of that fold are done"
 
 
 def _most_unlike(chain: Chain, chains: tuple[Chain, ...], way: Mapping[str, float]) -> str:

@@ -17,13 +17,14 @@ from foldfab.folding import anatomy, basic
 from foldfab.folding.basic import Variant
 from foldfab.folding.mechanism import ends, peak, reach
 from foldfab.folding.model import Chain
-from foldfab.folding.nominal import FRAMES, Nominal, nominal
+from foldfab.folding.nominal import FRAMES, Nominal, nominal, snapped
 from foldfab.folding.outline import leaves_outline
 from foldfab.folding.press import follow_down, play_limit
 from foldfab.folding.problem import Problem, extent, variants
 from foldfab.folding.site import Site
 from foldfab.folding.space import Batch, joined, still
 from foldfab.folding.units import Unit
+from foldfab.folding.work import SWEEPING
 from foldfab.geometry.arrays import Array, Bools
 from foldfab.geometry.boxes import Boxes, bounds, moved
 
@@ -71,6 +72,16 @@ class Lane:
     reach: tuple[Array, Array]
     """Lower and upper corners (b, 3) of all that it sweeps and half the gap around it, as seen from each base."""
 
+    def comes_past(self, depth: float) -> bool:
+        """Whether its far base, coming straight down, passes `depth` mm below its start, or above if negative."""
+        if self.drag is not None or self.chain.far is None:
+            return False
+        return self.snap >= -depth if depth < 0 else float(-self.way @ self.chain.rise) >= depth
+
+
+Place = tuple[Lane, tuple[int, int]]
+"""A lane and a window in N_s-ths."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Repertoire:
@@ -95,6 +106,8 @@ class Repertoire:
     """Lanes whose conflicts are known."""
     tables: dict[object, Bools] = field(default_factory=dict)
     """Conflict tables between the options of two patches that were made already."""
+    least: dict[str, Place] = field(default_factory=dict)
+    """By patch, its lane and window in the cheapest choice without conflicts, where that is known for certain."""
     reach: dict[str, tuple[Array, Array]] = field(default_factory=dict)
     """By base of the unit, lower and upper corner (3,) of all that the unit sweeps, as seen from that base."""
 
@@ -214,6 +227,7 @@ def _made(problem: Problem, own: Repertoire, site: Site, variant: Variant) -> La
         *_with_far_base(problem, chain, low, high), _seen_from_bases(problem, own, chain, drag, corners),
     )  # fmt: skip
     own.lanes.append(found)
+    problem.work.charge(SWEEPING)
     return found
 
 
@@ -232,7 +246,7 @@ def _movers(problem: Problem, own: Repertoire, chain: Chain) -> tuple[dict[int, 
         end = reach(chain, progress[0])
         far = (end - end[0]) @ chain.plane
     else:
-        progress = follow_down(chain, down - own.nominal.down[chain.far])
+        progress = snapped(follow_down(chain, down - own.nominal.down[chain.far]))
         far = None
     sections = [k for k in range(len(down)) if chain.far is None or progress[k, -1] > progress[k, 0]]
     found: dict[int, Boxes] = {}

@@ -7,12 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from foldfab.errors import FoldingError
+from foldfab.errors import FoldingError, LossError
 from foldfab.folding import anatomy, basic
 from foldfab.folding.demands import require_allowed, require_choices, require_variants
 from foldfab.folding.improve import improved, weight
 from foldfab.folding.model import FoldSolution, Modification, Step, Thickness
-from foldfab.folding.optimum import NO_MORE, PLAYING, lower_bound, optimal
+from foldfab.folding.optimum import NO_MORE, lower_bound, optimal
+from foldfab.folding.options import DELETION
 from foldfab.folding.ordering import Ordered, floors, greedy, travel
 from foldfab.folding.problem import Problem, without
 from foldfab.folding.rehearsal import first_clash
@@ -23,6 +24,7 @@ from foldfab.folding.symmetry import twins
 from foldfab.folding.tree import unit_tree
 from foldfab.folding.unit_fold import Choice, UnitFold
 from foldfab.folding.units import decompose
+from foldfab.folding.work import Work
 from foldfab.geometry.boxes import bounds, stacked
 from foldfab.scaffold.model import Scaffold
 
@@ -32,44 +34,51 @@ REHEARSALS = 8
 """How often the fold is solved anew because a rehearsal of the whole has shown a clash; the kernel judges the last."""
 
 
-def solve(scaffold: Scaffold) -> FoldSolution:
-    """The folding solution of a scaffold by the paper's greedy order, with the thickness of its recipe.
+def solve(
+    scaffold: Scaffold, work: Work | None = None, most: int | None = None, worth: int | None = None
+) -> FoldSolution:
+    """The folding solution of a scaffold, with the thickness of its recipe.
 
-    Where patches must not be split, the scaffold is solved with and without their top ends disconnected.
+    Where patches must not be split, the scaffold is solved with and without their top ends disconnected. The search for
+    what is better than the first solution is only for such as delete no more than `worth` patches, where that is given.
+    It ends with the `work`, that of the recipe's time limit where there is none.
 
     Raises:
+        LossError: more than `most` patches have to go, in whatever order.
         FoldingError: no order of the units folds the furniture; the message names what stands in the way.
     """
     thickness = Thickness.of_print(scaffold.recipe.print)
     if not scaffold.patches:
         raise FoldingError("nothing folds along this direction: every part lies perpendicular to it already")
+    work = work or Work(scaffold.recipe.fold.time_limit)
     rigid = rigid_patches(scaffold)
     if not rigid:
-        return _solved(scaffold, thickness)
+        return _solved(posed(scaffold, thickness, work), most, worth)
     found: list[FoldSolution] = []
     refused: list[FoldingError] = []
-    tries = [(), *((name,) for name in rigid[:SINGLES]), rigid]
-    for loose in dict.fromkeys(tries):
-        tried = disconnected(scaffold, loose, thickness)
+    tries = list(dict.fromkeys([(), *((name,) for name in rigid[:SINGLES]), rigid]))
+    for k, loose in enumerate(tries):
+        tried, share = disconnected(scaffold, loose, thickness), Work(work.left / (len(tries) - k))
         try:
-            found.append(_solved(tried, thickness))
+            found.append(_solved(posed(tried, thickness, share), most, worth))
         except FoldingError as error:
             refused.append(error)
+        work.charge(share.spent)
     if not found:
         raise refused[-1]
     return min(found, key=lambda s: (sum(m.is_deleted for m in s.modifications), s.cost))
 
 
-def _solved(scaffold: Scaffold, thickness: Thickness) -> FoldSolution:
-    problem = posed(scaffold, thickness)
+def _solved(problem: Problem, most: int | None, worth: int | None) -> FoldSolution:
     # First of all, so that copies of a unit get all the lanes that its first one needed.
     choices = floors(problem)
     require_variants(problem)
     require_allowed(problem)
+    _require_worth(choices, most)
     least: float | None = None
     for _ in range(REHEARSALS):
         scene = open_scene(problem)
-        ordered, bound = _ordered(problem, scene, choices)
+        ordered, bound = _ordered(problem, scene, choices, worth)
         # What a rehearsal forbids belongs to one order; the bound is over all options.
         least = bound if least is None else least
         bound = min(bound, least)
@@ -82,8 +91,20 @@ def _solved(scaffold: Scaffold, thickness: Thickness) -> FoldSolution:
     raise FoldingError(f"no folding solution found: {told} stay in the way of what folds before; try another thickness")
 
 
-def _ordered(problem: Problem, scene: Scene, choices: Mapping[str, Choice]) -> tuple[Ordered, float]:
-    """The folds of all units in their order, and what any order counts at least; `choices` is the cheapest of each."""
+def _require_worth(choices: Mapping[str, Choice], most: int | None) -> None:
+    """Raises a LossError where even the cheapest `choices` of all units delete more than `most` patches."""
+    least = sum(choice.weight for choice in choices.values())
+    if most is not None and DELETION * (most + 1) <= least < np.inf:
+        raise LossError(int(least // DELETION))
+
+
+def _ordered(
+    problem: Problem, scene: Scene, choices: Mapping[str, Choice], worth: int | None = None
+) -> tuple[Ordered, float]:
+    """The folds of all units in their order, and what any order counts at least; `choices` is the cheapest of each.
+
+    Better ones than the greedy order are only looked for among those that delete no more than `worth` patches.
+    """
     require_choices(problem, choices)
     ordered = greedy(problem, scene, choices)
     floor = {name: choice.weight for name, choice in choices.items()}
@@ -92,18 +113,17 @@ def _ordered(problem: Problem, scene: Scene, choices: Mapping[str, Choice]) -> t
     if problem.options.ordering == "greedy":
         bound = sum(floor.values()) if ordered.refusals else lower_bound(problem, scene, ordered, floor)
     else:
-        work = problem.options.time_limit - PLAYING * sum(problem.plays)
-        known = None if ordered.refusals else improved(problem, ordered, choices, work / PLAYING)
-        work = problem.options.time_limit - PLAYING * sum(problem.plays)
-        found, bound = optimal(problem, scene, known, floor, work)
+        known = None if ordered.refusals else improved(problem, ordered, choices)
+        limit = np.inf if worth is None else DELETION * (worth + 1)
+        found, bound = optimal(problem, scene, known, floor, limit)
         ordered = found or ordered
     if ordered.refusals:
         raise FoldingError(_refused(ordered))
     return ordered, bound
 
 
-def posed(scaffold: Scaffold, thickness: Thickness) -> Problem:
-    """The problem that a scaffold poses."""
+def posed(scaffold: Scaffold, thickness: Thickness, work: Work | None = None) -> Problem:
+    """The problem that a scaffold poses, to be solved within the work or else the recipe's time limit."""
     placed = {site.patch.name: site for site in sites(scaffold, thickness)}
     units = decompose(scaffold)
     tree = unit_tree(tuple(base.name for base in scaffold.bases), units)
@@ -117,6 +137,7 @@ def posed(scaffold: Scaffold, thickness: Thickness) -> Problem:
         {base.name: anatomy.faces(base, thickness) for base in scaffold.bases},
         {name: (lower.min(0), upper.max(0)) for name, (lower, upper) in corners.items()},
         furniture, (low.min(0), high.max(0)),
+        work=work or Work(scaffold.recipe.fold.time_limit),
     )  # fmt: skip
     return replace(problem, twins=twins(problem))
 

@@ -21,7 +21,7 @@ from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import Prospects, blocked_pieces, prospects, unhindered
 from foldfab.folding.realise import Clash, realised
 from foldfab.folding.reasons import reason_against, reasons_of
-from foldfab.folding.repertoire import Lane, Repertoire, extend
+from foldfab.folding.repertoire import Place, Repertoire, extend
 from foldfab.folding.scene import Scene, alone
 from foldfab.folding.surroundings import Surroundings, look
 from foldfab.folding.units import Unit
@@ -62,7 +62,7 @@ class Choice:
 
     weight: float
     """What it counts in the search."""
-    places: Mapping[str, tuple[Lane, tuple[int, int]]]
+    places: Mapping[str, Place]
     """By patch that is kept, its lane and its window in N_s-ths."""
 
 
@@ -143,10 +143,13 @@ def least_choice(problem: Problem, own: Repertoire) -> Choice:
         picked = graph.cheapest()
     if picked is None:
         return Choice(np.inf, {})
-    places = {o.patch: o.place(i) for o, i in zip(graph.options, picked, strict=True)}
+    chosen = {o.patch: o.place(i) for o, i in zip(graph.options, picked, strict=True)}
+    places = {p: place for p, place in chosen.items() if place is not None}
+    if not graph.gaps:
+        own.least.update(places)
     # Where the work did not suffice to prove the choice, what it may be too dear by is no part of what must be paid.
     weight = problem.least[own.unit] = graph.weight(picked) - sum(graph.gaps)
-    return Choice(weight, {p: place for p, place in places.items() if place is not None})
+    return Choice(weight, places)
 
 
 def is_solved(problem: Problem, around: Surroundings) -> bool:
@@ -204,7 +207,9 @@ def _picked(
     in_place: bool,
 ) -> tuple[Prospects, Graph, tuple[int, ...] | None]:  # fmt: skip
     """The cheapest choice without conflicts, over all lanes that could be part of it."""
-    picked = graph.cheapest()
+    # Preferences depend on where a unit has been carried, and so may the cheapest choice.
+    known = graph.holds(own.least) if not around.offset.any() else None
+    picked = known or graph.cheapest()
     while wanted := _wanted(problem, own, graph, picked):
         for patch in wanted:
             extend(problem, own, patch)

@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from foldfab.geometry.boxes import Boxes, close_pairs, grown
+from foldfab.geometry.groups import Groups
 from foldfab.scaffold import segments, sheets
 from foldfab.scaffold.bridges import bridge
 from foldfab.scaffold.contacts import Contacts
-from foldfab.geometry.groups import Groups
 from foldfab.scaffold.model import BasePatch, Outline
 from foldfab.scaffold.segments import Segment
 from foldfab.scaffold.sheets import Sheet

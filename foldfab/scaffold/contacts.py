@@ -9,10 +9,10 @@ import numpy as np
 
 from foldfab.errors import AbstractionError
 from foldfab.geometry.boxes import Boxes, close_pairs, gaps, grown, overlaps
+from foldfab.geometry.groups import Groups
 from foldfab.recipe.contacts import pair, reach
 from foldfab.recipe.model import Pair, Recipe
 from foldfab.scaffold import segments as seg
-from foldfab.geometry.groups import Groups
 from foldfab.scaffold.segments import Segment
 
 Names = Sequence[tuple[str, ...]]

@@ -23,7 +23,7 @@ PLATE_TILT = np.radians(26.0)
 ROD_TILT = np.radians(8.0)
 """The same for a rod's axis."""
 SQUARE = 1e-3
-"""A rod whose sides differ by less than this share is square: its sheet faces along y, and no noise of a file decides."""
+"""A rod whose sides differ by less than this share is square: its sheet faces along y, and no noise decides."""
 FILLING = 1.6
 """A board whose bounding rectangle is this many times its own face leans within its plane."""
 ALL_BUT_ZERO = 1e-4

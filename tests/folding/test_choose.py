@@ -10,11 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from foldfab.folding import choose
-from foldfab.folding.choose import cheapest
+from foldfab.folding.choose import Combination, cheapest
 from foldfab.geometry.arrays import Array, Bools
 
 Conflicts = dict[tuple[int, int], Bools]
-Forbidden = frozenset[tuple[tuple[int, int], ...]]
+Forbidden = frozenset[Combination]
 Instance = tuple[list[Array], Conflicts, Forbidden]
 INF = float("inf")
 
@@ -23,7 +23,7 @@ def is_allowed(choice: tuple[int, ...], costs: list[Array], conflicts: Conflicts
     return (
         all(np.isfinite(costs[g][o]) for g, o in enumerate(choice))
         and not any(table[choice[g], choice[h]] for (g, h), table in conflicts.items())
-        and not any(all(choice[g] == o for g, o in combination) for combination in forbidden)
+        and not any(all(choice[g] in many for g, many in combination) for combination in forbidden)
     )
 
 
@@ -42,10 +42,10 @@ def instances(draw: st.DrawFn) -> Instance:
         for (g, n), (h, m) in itertools.combinations(enumerate(sizes), 2)
         if draw(st.booleans())
     }
-    choices = st.tuples(*(st.integers(0, n - 1) for n in sizes))
+    choices = st.tuples(*(st.sets(st.integers(0, n - 1), min_size=1) for n in sizes))
     parts = st.sets(st.integers(0, len(sizes) - 1), min_size=1)
     banned = draw(st.lists(st.tuples(choices, parts), max_size=4))
-    return costs, conflicts, frozenset(tuple((g, c[g]) for g in sorted(p)) for c, p in banned)
+    return costs, conflicts, frozenset(tuple((g, tuple(sorted(c[g]))) for g in sorted(p)) for c, p in banned)
 
 
 @given(instances())
@@ -67,7 +67,7 @@ def test_nor_is_one_where_the_search_is_handed_over(limit: int, widest: int, ins
 
 def test_both_ways_to_search_are_taken(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[int] = []
-    monkeypatch.setattr(choose, "proven", lambda alive, *_: (asked.append(len(alive)), (None, 0.0))[1])
+    monkeypatch.setattr(choose, "proven", lambda alive, *_: (asked.append(len(alive)), (None, 0.0, 0.0))[1])
     costs = [np.array([0.0, 1.0]), np.array([0.0, 0.4])]
     conflicts = {(0, 1): np.array([[True, False], [False, False]])}
     cheapest(costs, conflicts)
@@ -110,19 +110,24 @@ def test_an_infinite_option_is_never_taken() -> None:
 
 def test_a_forbidden_combination_leaves_its_parts_allowed() -> None:
     costs = [np.array([0.0, 1.0]), np.array([0.0, 1.0]), np.array([0.0, 3.0])]
-    forbidden = frozenset({((0, 0), (1, 0), (2, 0))})
+    forbidden = frozenset({((0, (0,)), (1, (0,)), (2, (0,)))})
     assert cheapest(costs, {}, forbidden) in {(0, 1, 0), (1, 0, 0)}
 
 
+def test_a_forbidden_combination_may_hold_several_options_of_a_group() -> None:
+    costs = [np.array([0.0, 1.0, 9.0]), np.array([0.0, 2.0, 5.0])]
+    assert cheapest(costs, {}, frozenset({((0, (0, 1)), (1, (0, 1)))})) == (0, 2)
+
+
 def test_a_patch_without_neighbours_heeds_what_is_forbidden() -> None:
-    assert cheapest([np.array([0.0, 1.0])], {}, frozenset({((0, 0),)})) == (1,)
-    assert cheapest([np.array([0.0])], {}, frozenset({((0, 0),)})) is None
+    assert cheapest([np.array([0.0, 1.0])], {}, frozenset({((0, (0,)),)})) == (1,)
+    assert cheapest([np.array([0.0])], {}, frozenset({((0, (0,)),)})) is None
 
 
 def test_an_option_that_is_forbidden_with_another_leaves_its_place_to_one_like_it() -> None:
     """The first option is no dearer and excludes no more than the second, but it must not be taken with the other's."""
     costs = [np.array([0.0, 0.1]), np.array([0.0, 5.0])]
-    assert cheapest(costs, {}, frozenset({((0, 0), (1, 0))})) == (1, 0)
+    assert cheapest(costs, {}, frozenset({((0, (0,)), (1, (0,)))})) == (1, 0)
 
 
 def test_patches_that_exclude_each_other_have_no_choice() -> None:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from foldfab.folding.nominal import FRAMES, nominal
+from foldfab.folding.nominal import CLIMB, FRAMES, nominal, snapped
 from foldfab.folding.problem import Problem, clear_height
 from foldfab.recipe.model import Part
 
@@ -23,7 +23,7 @@ def test_two_bases_come_together_by_all_but_a_stack(problem: Make) -> None:
     assert found.sections == 1 and found.down["ceiling"].shape == (1, FRAMES)
     assert not found.down["ground"].any()
     way = found.down["ceiling"][0]
-    assert way[0] == 0.0 and (np.diff(way) < 0).all()
+    assert not way[: CLIMB + 1].any() and (np.diff(way[CLIMB:]) < 0).all()
     assert way[-1] == pytest.approx(STACK - 80.0)
 
 
@@ -43,13 +43,20 @@ def test_the_highest_base_comes_down_first_and_carries_on_with_the_next(
     found = nominal(made, unit)
     assert unit.bases == ("low", "middle", "high") and found.sections == 2
     assert not found.down["low"].any()
-    assert not found.down["middle"][0].any() and (np.diff(found.down["high"][0]) < 0).all()
+    assert not found.down["middle"][0].any() and (np.diff(found.down["high"][0, CLIMB:]) < 0).all()
     assert np.diff(found.down["middle"][1]) == pytest.approx(np.diff(found.down["high"][1]))
     assert found.down["high"][1, 0] == pytest.approx(found.down["high"][0, -1])
     clear = {pair: clear_height(made, *pair) for pair in itertools.combinations(unit.bases, 2)}
     end = {base: way[-1, -1] for base, way in found.down.items()}
     assert clear["low", "middle"] + end["middle"] == pytest.approx(STACK)
     assert clear["middle", "high"] + end["high"] - end["middle"] == pytest.approx(STACK)
+
+
+def test_the_snap_comes_before_the_section_in_which_a_chain_starts() -> None:
+    past = np.array([np.full(FRAMES, 0.2), np.linspace(0.2, 0.6, FRAMES), np.linspace(0.6, 1.0, FRAMES)])
+    found = snapped(past)
+    assert found[1, 0] == 0.0 and (np.diff(found[1, : CLIMB + 1]) > 0).all()
+    assert (found[1, CLIMB:] == past[1, CLIMB:]).all() and (found[[0, 2]] == past[[0, 2]]).all()
 
 
 @pytest.mark.parametrize("name", ["h_scaffold", "passage", "shelf", "box_with_table", "tower", "chair"])

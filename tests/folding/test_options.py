@@ -12,7 +12,7 @@ from foldfab.errors import FoldingError
 from foldfab.folding.basic import cost
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.model import FoldSolution
-from foldfab.folding.options import DELETION, Options, options_of
+from foldfab.folding.options import DELETION, Alike, Options, options_of
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import Prospects, prospects, unhindered
 from foldfab.folding.scene import open_scene
@@ -115,8 +115,8 @@ def test_windows_too_narrow_for_a_hinge_are_out(problem: Make) -> None:
     assert min(widths) == int(np.ceil((made.thickness.hinge_width + made.thickness.gap) / 6.0))
 
 
-@pytest.mark.parametrize("wider", [True, False])
-def test_options_alike_are_of_one_lane_and_wider_or_of_any_window(problem: Make, wider: bool) -> None:
+@pytest.mark.parametrize("alike", ["wider windows", "any window"])
+def test_options_alike_are_of_one_lane_and_wider_or_of_any_window(problem: Make, alike: Alike) -> None:
     options = of(problem("h_scaffold", shrink_steps=3), "leg")
     for i in range(len(options.price) - 1):
         own = options[i]
@@ -124,9 +124,27 @@ def test_options_alike_are_of_one_lane_and_wider_or_of_any_window(problem: Make,
             j
             for j in range(len(options.price) - 1)
             if (other := options[j]).variant == own.variant
-            and (not wider or (other.window[0] <= own.window[0] and other.window[1] >= own.window[1]))
+            and (alike == "any window" or (other.window[0] <= own.window[0] and other.window[1] >= own.window[1]))
         ]
-        assert options.like(i, wider=wider) == expected
+        assert options.like(i, alike) == expected
+        assert options.like(i, "this") == [i]
+
+
+def test_options_that_let_a_base_fall_alike_are_of_any_side_and_window(problem: Make) -> None:
+    options = of(problem("h_scaffold", shrink_steps=2, max_hinges=3), "leg")
+    last = len(options.price) - 1
+    kinds = [(v.mechanism, v.hinges) for v in (options[i].variant for i in range(last)) if v is not None]
+    by_hinges = {n: [i for i, kind in enumerate(kinds) if kind == ("in-place", n)] for n in (1, 3)}
+    assert options.like(by_hinges[1][0], "any fall") == by_hinges[1]
+    assert options.like(last, "any fall") == [last]
+    # Folded, a chain of one hinge leaves 8.9 mm, and one of three 17.5 mm.
+    assert options.like(by_hinges[1][0], "any fall", 80 - 8.9 - 0.1) == [*by_hinges[1], last]
+    assert options.like(by_hinges[1][0], "any fall", 80 - 17.5 - 0.1) == sorted([*by_hinges[1], *by_hinges[3], last])
+    # Before they fall they rise, the one with more hinges more.
+    rises = {x.variant.hinges: x.snap for x in options.lanes if x.snap > 0}
+    assert rises[1] < rises[3]
+    assert options.like(by_hinges[3][0], "any fall", -rises[3]) == [*by_hinges[3], last]
+    assert options.like(by_hinges[3][0], "any fall", -rises[1]) == sorted([*by_hinges[1], *by_hinges[3], last])
 
 
 @pytest.mark.parametrize(

@@ -17,6 +17,7 @@ from foldfab.folding.scene import Scene, open_scene
 from foldfab.folding.solve import NO_MORE
 from foldfab.folding.unit_fold import Choice, Refusal, UnitFold, fold_alone, fold_unit
 from foldfab.folding.units import Unit
+from foldfab.folding.work import PLAYING
 from foldfab.recipe.model import Part
 
 Make = Callable[..., FoldSolution]
@@ -148,6 +149,22 @@ def test_floors_only_save_time(problem: Callable[..., Problem], name: str) -> No
         found = greedy(made, open_scene(made), bound(made))
         orders.append([(fold.unit.name, fold.chosen) for fold in found.folds])
     assert orders[0] == orders[1]
+
+
+def test_where_the_work_is_spent_nothing_is_looked_at_ahead(
+    problem: Callable[..., Problem], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looked: list[UnitFold] = []
+    monkeypatch.setattr(ordering, "_change", lambda _, fold: (looked.append(fold), 0.0)[1])
+    for is_spent in (False, True):
+        looked.clear()
+        made = problem("box_with_table", slanting=False)
+        low = floors(made)
+        if is_spent:
+            made.work.charge(made.work.limit + 2 * PLAYING * len(made.sites))
+        found = greedy(made, open_scene(made), low)
+        assert {fold.unit.name for fold in found.folds} == {unit.name for unit in made.units}
+        assert bool(looked) != is_spent
 
 
 def test_after_a_fold_all_stand_where_it_took_them(problem: Callable[..., Problem]) -> None:

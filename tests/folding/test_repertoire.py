@@ -13,9 +13,9 @@ from foldfab.folding import anatomy
 from foldfab.folding.basic import Variant
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.mechanism import reach
-from foldfab.folding.nominal import FRAMES
+from foldfab.folding.nominal import CLIMB, FRAMES
 from foldfab.folding.press import follow_down
-from foldfab.folding.problem import Problem
+from foldfab.folding.problem import Problem, without
 from foldfab.folding.repertoire import (
     ROOM_THICKNESSES,
     Lane,
@@ -29,6 +29,8 @@ from foldfab.folding.repertoire import (
     swept,
     upright,
 )
+from foldfab.folding.scene import open_scene
+from foldfab.folding.unit_fold import UnitFold, fold_unit
 from foldfab.geometry.boxes import bounds
 from foldfab.recipe.model import Part
 
@@ -79,19 +81,38 @@ def test_what_was_banned_is_no_variant(problem: Make) -> None:
     assert IN_PLACE not in {x.variant for x in own.plain["leg"]} and len(own.lanes) == 5
 
 
+def test_a_ban_forgets_nothing_of_other_units(problem: Make) -> None:
+    made = problem("tower")
+    scene, (a, b) = open_scene(made), (made.unit_of["a"], made.unit_of["b"])
+    for unit in (a, b):
+        fold_unit(made, scene, unit)
+    other = without(made, frozenset({("a", IN_PLACE)}))
+    assert repertoire(other, b) is repertoire(made, b) and repertoire(other, a) is not repertoire(made, a)
+    assert {key[0][0] for key in other.solved} == {b}
+    assert {key: found for key, found in made.solved.items() if key[0][0] is b} == other.solved
+    assert isinstance(found := fold_unit(other, scene, a), UnitFold)
+    assert found.chosen["a"].variant != IN_PLACE
+    # What is allowed again is as it was, and not as it is remembered from while it was banned.
+    assert repertoire(without(other, frozenset()), a).plain.keys() == repertoire(made, a).plain.keys()
+    assert {x.variant for x in repertoire(without(other, frozenset()), a).plain["a"]} == {
+        x.variant for x in repertoire(made, a).plain["a"]
+    }
+
+
 @pytest.mark.parametrize("name", ["h_scaffold", "slanted_h", "deep_box", "t_scaffold", "chair"])
 def test_a_lane_starts_as_high_as_it_stood_open_and_ends_flat(problem: Make, name: str) -> None:
-    """Accordions are looked at from where their snap is over: until then their bases stand still."""
+    """Until the snap of accordions is over their bases stand still."""
     made = problem(name)
     for unit in made.units:
         own = whole(made, unit)
         for x in own.lanes:
             start, end = own.movers[x.number][x.active.start], own.movers[x.number][x.active.stop - 1]
-            first = follow_down(x.chain, np.zeros(1)) if x.snap > 0 else np.zeros(1)
-            assert reach(x.chain, first)[0, 1] == pytest.approx(reach(x.chain, np.zeros(1))[0, 1], abs=1e-3)
-            expected = anatomy.moving_boxes(x.chain, made.thickness, first)
-            count = expected.center.shape[1]
-            assert start.center[0, :count] == pytest.approx(expected.center[0], abs=1e-6)
+            for frame, over in ((0, np.zeros(1)), (CLIMB, follow_down(x.chain, np.zeros(1)))):
+                if frame == 0 or x.snap > 0:
+                    assert reach(x.chain, over)[0, 1] == pytest.approx(reach(x.chain, np.zeros(1))[0, 1], abs=1e-3)
+                    expected = anatomy.moving_boxes(x.chain, made.thickness, over)
+                    count = expected.center.shape[1]
+                    assert start.center[frame, :count] == pytest.approx(expected.center[0], abs=1e-6)
             panels = end.axes[-1, : len(x.chain.lengths)]
             assert np.abs(panels[:, 0, 2]) == pytest.approx(np.ones(len(panels)), abs=1e-6)
             assert len(start.center) == FRAMES

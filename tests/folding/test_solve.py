@@ -10,9 +10,13 @@ import numpy as np
 import pytest
 
 import foldfab
-from foldfab.folding.model import FoldSolution, Modification
-from foldfab.folding.solve import solve
-from foldfab.recipe.model import FoldOptions, Part, Recipe
+from foldfab.errors import LossError
+from foldfab.folding.model import FoldSolution, Modification, Thickness
+from foldfab.folding.options import DELETION
+from foldfab.folding.problem import Problem
+from foldfab.folding.solve import posed, solve
+from foldfab.folding.work import Work
+from foldfab.recipe.model import FoldOptions, Part, Pattern, Recipe
 from foldfab.scaffold.model import Scaffold
 
 Make = Callable[..., FoldSolution]
@@ -44,6 +48,54 @@ def test_without_slanting_h_scaffolds_fold_in_place(solution: Make, name: str) -
     assert {m.mechanism for m in made.modifications} == {"in-place"}
     assert made.cost == pytest.approx(0.5 / 3)
     assert all(step.travel[b][:, :2].any() == False for step in made.steps for b in step.travel)  # noqa: E712
+
+
+def test_where_parts_certainly_go_that_is_told_before_anything_is_searched(
+    scaffold: Callable[..., Scaffold], furniture: dict[str, tuple[Part, ...]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    parts = tuple(
+        replace(p, pin=Pattern(mechanism="deleted")) if p.name in ("back", "left") else p
+        for p in furniture["three_walls"]
+    )
+    made = scaffold(parts)
+    assert sum(m.is_deleted for m in solve(made, most=2).modifications) == 2
+    monkeypatch.setattr("foldfab.folding.solve.greedy", None)
+    with pytest.raises(LossError, match="at least 2 parts would have to go") as lost:
+        solve(made, most=1)
+    assert lost.value.gone == 2
+
+
+def test_what_is_not_worth_it_is_not_bettered(
+    scaffold: Callable[..., Scaffold], furniture: dict[str, tuple[Part, ...]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The search is told to keep to what loses no more than that, and what there is without it stands."""
+    limits: list[float] = []
+    monkeypatch.setattr(
+        "foldfab.folding.solve.optimal", lambda _, __, known, floor, limit: (limits.append(limit), (known, 0.0))[1]
+    )
+    monkeypatch.setattr("foldfab.folding.solve.NO_MORE", -1.0)
+    made = scaffold(furniture["three_walls"])
+    assert solve(made, worth=0).cost == solve(made, worth=3).cost == solve(made).cost
+    assert limits == [DELETION, 4 * DELETION, np.inf]
+
+
+def test_all_ways_to_spare_rigid_parts_share_the_work(
+    scaffold: Callable[..., Scaffold], furniture: dict[str, tuple[Part, ...]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    parts = tuple(replace(p, hingeable=p.name not in ("left", "right")) for p in furniture["three_walls"])
+    limits: list[float] = []
+
+    def pose(made: Scaffold, thickness: Thickness, work: Work) -> Problem:
+        limits.append(work.limit)
+        work.charge(0.3)
+        return posed(made, thickness, work)
+
+    monkeypatch.setattr("foldfab.folding.solve.posed", pose)
+    work = Work(4.0)
+    solve(scaffold(parts), work)
+    assert limits[0] == pytest.approx(1.0) and len(limits) == 4
+    assert all(limit <= (4.0 - 0.3 * k) / (4 - k) for k, limit in enumerate(limits))
+    assert work.spent >= 1.2
 
 
 @pytest.mark.parametrize("name", ["t_scaffold", "table"])

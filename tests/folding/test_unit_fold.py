@@ -9,22 +9,34 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from foldfab.folding import unit_fold
+from foldfab.folding import realise, unit_fold
 from foldfab.folding.conflict import drag_alike
 from foldfab.folding.congruent import repertoire
+from foldfab.folding.graph import Graph
 from foldfab.folding.options import options_of
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import prospects
 from foldfab.folding.realise import Clash, realised
 from foldfab.folding.scene import Scene, alone, open_scene
+from foldfab.folding.simulate import clashes
 from foldfab.folding.solve import NO_MORE
 from foldfab.folding.surroundings import look
 from foldfab.folding.unit_fold import Refusal, UnitFold, fold_seen, fold_unit, least_choice
+from foldfab.folding.units import Unit
+from foldfab.recipe.model import Part
 
 from .every import whole
 
 Make = Callable[..., Problem]
 Folded = Callable[[Problem], tuple[Scene, list[tuple[Scene, UnitFold]]]]
+
+
+@pytest.fixture
+def plays(monkeypatch: pytest.MonkeyPatch) -> list[Unit]:
+    """The units whose folds are played through, one after another."""
+    seen: list[Unit] = []
+    monkeypatch.setattr(realise, "clashes", lambda unit, *rest: (seen.append(unit), clashes(unit, *rest))[1])
+    return seen
 
 
 def folds(made: Problem, patch: str, scene: Scene | None = None, **options: bool) -> UnitFold:
@@ -150,6 +162,45 @@ def test_what_a_simulation_finds_is_learned(problem: Make, monkeypatch: pytest.M
     assert sorted(asked[:-1]) == sorted([(0, 5), (0, 4), (1, 5)] * 2)
 
 
+def test_what_meets_while_accordions_snap_is_known_before_anything_is_played(
+    problem: Make, box: Callable[..., Part], board_at: Callable[..., Part], plays: list[Unit]
+) -> None:
+    """Knuckles at the corners of a low box: past the snap they are out of each other's way, before it they are not."""
+    walls = (box(name, (x, 0, 17), (4, 76, 30)) for name, x in (("left", -60), ("right", 60)))
+    ends = (box(name, (0, y, 17), (124, 4, 30)) for name, y in (("front", -41), ("back", 41)))
+    made = problem((board_at("ground", 0, 200, 120), board_at("ceiling", 34, 200, 120), *walls, *ends), slanting=False)
+    assert folds(made, "back").cost > 4 / 24
+    assert len(plays) == 1
+
+
+def test_what_hangs_on_a_base_meets_the_same_however_the_base_comes_down(
+    problem: Make, board_at: Callable[..., Part], wall_at: Callable[..., Part], leaning_at: Callable[..., Part],
+    plays: list[Unit],
+) -> None:  # fmt: skip
+    """A post that leans out beside the ceiling: no choice keeps the ceiling above it, and two plays tell."""
+    boards = (board_at("ground", 0, 240), board_at("ceiling", 84, x=-20))
+    walls = (wall_at("left", -100, 0, 84), wall_at("right", 50, 0, 84))
+    made = problem((*boards, *walls, leaning_at("post", 62, 107, 0, 124)), slanting=False)
+    found = fold_unit(made, open_scene(made), made.unit_of["left"])
+    assert isinstance(found, Refusal) and "post meets ceiling" in found.reason
+    assert len(plays) <= 2
+    alone_there = fold_unit(made, alone(open_scene(made), made.unit_of["left"]), made.unit_of["left"])
+    assert isinstance(alone_there, UnitFold)
+
+
+def test_it_does_not_where_a_higher_stack_stops_the_base_before(
+    problem: Make, board_at: Callable[..., Part], wall_at: Callable[..., Part], leaning_at: Callable[..., Part],
+    plays: list[Unit],
+) -> None:  # fmt: skip
+    """Where the ceiling would meet the post only at the end, three hinges in a wall keep it above that."""
+    boards = (board_at("ground", 0, 240), board_at("ceiling", 84, x=-20))
+    walls = (wall_at("left", -100, 0, 84), wall_at("right", 50, 0, 84))
+    made = problem((*boards, *walls, leaning_at("post", 79, 107, 0, 124)), slanting=False)
+    fold = folds(made, "left")
+    assert max(option.variant.hinges for option in fold.chosen.values() if option.variant) == 3
+    assert len(plays) <= 4
+
+
 @pytest.mark.parametrize(("holds_for", "tries"), [("this", 61), ("any window", 5)])
 def test_a_clash_rules_out_as_much_as_it_says(
     problem: Make, monkeypatch: pytest.MonkeyPatch, holds_for: str, tries: int
@@ -188,6 +239,39 @@ def test_a_clash_of_two_forbids_them_together_and_of_three_all_at_once(
         made = problem("three_walls")
         folds(made, "back")
         assert len(asked) > 5 and not set(asked[:5]) & set(asked[5:])
+
+
+def test_all_that_a_play_shows_is_learned_at_once(problem: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two walls are too wide for each other, and besides the back must not fold as it does."""
+    asked: list[dict[str, object]] = []
+
+    def refuse(problem: Problem, scene: Scene, unit: object, around: object, chosen: dict[str, object]) -> object:
+        asked.append(dict(chosen))
+        if len(asked) == 1:
+            return Clash((("left", "right"),), "not together", also=(Clash((("back",),), "nor so", "any window"),))
+        return realised(problem, scene, unit, around, chosen)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(unit_fold, "realised", refuse)
+    folds(problem("three_walls"), "back")
+    first, second = asked[:2]
+    assert (first["left"], first["right"]) != (second["left"], second["right"])
+    assert first["back"].variant != second["back"].variant  # type: ignore[attr-defined]
+
+
+def test_the_cheapest_choice_is_not_looked_for_again_where_nothing_is_in_its_way(
+    problem: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = problem("three_walls")
+    unit, asked = made.unit_of["back"], []
+    least = least_choice(made, repertoire(made, unit))
+    search = Graph.cheapest
+    monkeypatch.setattr(Graph, "cheapest", lambda graph: (asked.append(graph), search(graph))[1])
+    assert folds(made, "back").weight == pytest.approx(least.weight)
+    assert not asked
+    # It is where it has been found out that the choice does not hold.
+    monkeypatch.setattr(unit_fold, "realised", lambda *_: Clash((unit.patches,), "no", "any window"))
+    made.solved.clear()
+    assert isinstance(fold_unit(made, open_scene(made), unit), Refusal) and asked
 
 
 def test_changed_patches_say_why(problem: Make, folded: Folded) -> None:

@@ -12,13 +12,13 @@ from foldfab.errors import RecipeError
 from foldfab.folding.solve import solve
 from foldfab.folding.units import Unit, decompose
 from foldfab.geometry.boxes import Boxes, close_pairs
+from foldfab.geometry.groups import Groups
 from foldfab.recipe.compose import KINDS, MOST_CELLS, compose, grid
 from foldfab.recipe.fields import MOST_PARTS
 from foldfab.recipe.model import Recipe
 from foldfab.recipe.read import read
 from foldfab.recipe.write import as_text
 from foldfab.scaffold.abstract import abstract
-from foldfab.geometry.groups import Groups
 from foldfab.scaffold.model import Scaffold
 
 TABLE_1 = {

@@ -34,7 +34,9 @@ def turned(recipe: Recipe, rotation: Array, factor: float = 1.0) -> Recipe:
 
 def places(recipe: Recipe, direction: Array) -> Array:
     """(n, 3) where the parts are in the canonical frame, about their mean."""
-    found = np.array([part.center for part in sorted(recipe.parts, key=lambda p: p.name)]) @ canonical(recipe, direction).T
+    found = (
+        np.array([part.center for part in sorted(recipe.parts, key=lambda p: p.name)]) @ canonical(recipe, direction).T
+    )
     return found - found.mean(0)
 
 

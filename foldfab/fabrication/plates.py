@@ -1,4 +1,4 @@
-"""Base plates: the outlines of the parts in a base patch, K thick, with the feet and plinths of their hinges."""
+"""Base plates: the outlines of the parts in a base patch, K thick, with the feet, plinths and pockets of their hinges."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from foldfab.fabrication.printed import printed
 from foldfab.fabrication.shapes import Shape, box, cut, hull, placed, union
 from foldfab.fabrication.solids import pieces, without_crumbs
 from foldfab.fabrication.styles import style
-from foldfab.folding.anatomy import RIM, base_boxes, faces
+from foldfab.folding.anatomy import RIM, base_boxes, faces, pockets
 from foldfab.folding.mechanism import joints, tilts
 from foldfab.folding.model import Chain, Thickness
 from foldfab.geometry.arrays import Array
@@ -20,6 +20,10 @@ GROWTH = (0.0, 0.2, 0.5, 1.0, 2.0)
 """By how much outlines are grown, mm, until parts that touch are one body."""
 ROOT_SHARE = 0.5
 """How deep a foot reaches into its plate, as a share of its own thickness or the plate's."""
+WALL = 1.2
+"""Beside a pocket no wall thinner than this is left, mm."""
+OPEN = 0.1
+"""How far a pocket is cut beyond the faces and edges that it opens, mm."""
 
 
 def plate(base: BasePatch, chains: tuple[Chain, ...], thickness: Thickness) -> tuple[Shape, bool]:
@@ -31,8 +35,27 @@ def plate(base: BasePatch, chains: tuple[Chain, ...], thickness: Thickness) -> t
         for end in _ends(chain, base.name):
             solid, holes, pad = _mount(chain, base, thickness, end)
             posts, sockets, pads = posts + solid, sockets + holes, [*pads, pad]
-    body, is_filled = _one_body(_members(base, thickness), pads)
-    return cut(union([body, *posts]), sockets), is_filled
+    members = _members(base, thickness)
+    body, is_filled = _one_body(members, pads)
+    sunk = [(c, end, p) for c in chains for end in _ends(c, base.name) if len(p := pockets(c, end, thickness))]
+    recesses = [_recess(c, end, pocket, members, [p for _, _, p in sunk if p is not pocket]) for c, end, pocket in sunk]
+    return cut(union([cut(body, recesses), *posts]), sockets), is_filled
+
+
+def _recess(chain: Chain, end: int, pocket: Boxes, members: Boxes, others: list[Boxes]) -> Shape:
+    """A pocket (1,) as it is cut, as far as the edges of the plate or of other pockets where these are near."""
+    half, axes = pocket.half[0], pocket.axes[0]
+    low, high = -half, half.copy()
+    away = (1.0 if end == 0 else -1.0) * float(np.sign(chain.rise @ axes[2]))
+    for beside in (members, *others):
+        for i in range(2):
+            middle = (beside.center - pocket.center[0]) @ axes[i]
+            reach = np.abs(beside.axes @ axes[i] * beside.half).sum(1)
+            for edge in np.concatenate([middle - reach, middle + reach]).tolist():
+                low[i] = edge - OPEN if -half[i] - WALL < edge < -half[i] else low[i]
+                high[i] = edge + OPEN if half[i] < edge < half[i] + WALL else high[i]
+    low[2], high[2] = (low[2], high[2] + OPEN) if away > 0 else (low[2] - OPEN, high[2])
+    return placed(box(low, high), pocket.center[0], axes)
 
 
 def _members(base: BasePatch, thickness: Thickness) -> Boxes:
@@ -76,14 +99,15 @@ def _mount(chain: Chain, base: BasePatch, thickness: Thickness, end: int) -> tup
     marks = knuckles(chain.hinge_spans[0 if end == 0 else -1], thickness, chain.breaks)
     marks = marks if end == 0 else marks.mirrored
     pad, half = chain.pads[end], thickness.panel / 2
-    depth = thickness.axis_height + pad + ROOT_SHARE * min(thickness.panel, face.top - face.bottom)
+    plate = face.top - face.bottom
+    depth = thickness.axis_height + max(pad, 0.0) + ROOT_SHARE * min(thickness.panel, plate + min(pad, 0.0))
     solid, holes = style(thickness.hinge).carrier(marks, thickness, 0.0, 0.0)
     solid += feet(marks, thickness, depth)
     if pad > 0:
         solid.append(box((-half, span[0], -depth), (half, span[1], -thickness.axis_height)))
     low, high = (span if pad > 0 else hinge) + np.array([-RIM, RIM]) * (pad > 0)
     below = thickness.axis_height + pad
-    slab = box((-half - RIM, low, -below - (face.top - face.bottom)), (half + RIM, high, -below))
+    slab = box((-half - RIM, low, -below - plate), (half + RIM, high, -below))
     made = [placed(s, axis, frame) for s in solid]
     return made, [placed(h, axis, frame) for h in holes], placed(slab, axis, frame)
 

@@ -1,4 +1,4 @@
-"""Base plates: the outlines of the parts in a base patch, K thick, with the feet, plinths and pockets of their hinges."""
+"""Base plates: the outlines of the parts in a base patch, K thick, with feet, plinths and pockets of their hinges."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ ROOT_SHARE = 0.5
 """How deep a foot reaches into its plate, as a share of its own thickness or the plate's."""
 WALL = 1.2
 """Beside a pocket no wall thinner than this is left, mm."""
-OPEN = 0.1
-"""How far a pocket is cut beyond the faces and edges that it opens, mm."""
+OPEN = GROWTH[-1] + 0.1
+"""How far a pocket is cut beyond the faces and edges that it opens, mm: outlines may be grown."""
 
 
 def plate(base: BasePatch, chains: tuple[Chain, ...], thickness: Thickness) -> tuple[Shape, bool]:
@@ -35,26 +35,29 @@ def plate(base: BasePatch, chains: tuple[Chain, ...], thickness: Thickness) -> t
         for end in _ends(chain, base.name):
             solid, holes, pad = _mount(chain, base, thickness, end)
             posts, sockets, pads = posts + solid, sockets + holes, [*pads, pad]
-    members = _members(base, thickness)
-    body, is_filled = _one_body(members, pads)
-    sunk = [(c, end, p) for c in chains for end in _ends(c, base.name) if len(p := pockets(c, end, thickness))]
-    recesses = [_recess(c, end, pocket, members, [p for _, _, p in sunk if p is not pocket]) for c, end, pocket in sunk]
-    return cut(union([cut(body, recesses), *posts]), sockets), is_filled
+    body, is_filled = _one_body(_members(base, thickness), pads)
+    return cut(union([cut(body, recesses(base, chains, thickness)), *posts]), sockets), is_filled
 
 
-def _recess(chain: Chain, end: int, pocket: Boxes, members: Boxes, others: list[Boxes]) -> Shape:
-    """A pocket (1,) as it is cut, as far as the edges of the plate or of other pockets where these are near."""
+def recesses(base: BasePatch, chains: tuple[Chain, ...], thickness: Thickness) -> list[Shape]:
+    """What is cut from a base, before anything stands on it, for the chains that sink into it; open posture."""
+    found = [(pockets(c, end, thickness), end) for c in chains for end in _ends(c, base.name) if c.pads[end] < 0]
+    edges = [base_boxes(base, thickness), *(pocket for pocket, _ in found)]
+    return [_recess(pocket, end, edges) for pocket, end in found]
+
+
+def _recess(pocket: Boxes, end: int, edges: list[Boxes]) -> Shape:
+    """A pocket (1,) as it is cut: on to an edge of the plate, or of another pocket, that is near."""
     half, axes = pocket.half[0], pocket.axes[0]
     low, high = -half, half.copy()
-    away = (1.0 if end == 0 else -1.0) * float(np.sign(chain.rise @ axes[2]))
-    for beside in (members, *others):
+    for beside in edges:
         for i in range(2):
             middle = (beside.center - pocket.center[0]) @ axes[i]
             reach = np.abs(beside.axes @ axes[i] * beside.half).sum(1)
             for edge in np.concatenate([middle - reach, middle + reach]).tolist():
                 low[i] = edge - OPEN if -half[i] - WALL < edge < -half[i] else low[i]
                 high[i] = edge + OPEN if half[i] < edge < half[i] + WALL else high[i]
-    low[2], high[2] = (low[2], high[2] + OPEN) if away > 0 else (low[2] - OPEN, high[2])
+    low[2], high[2] = (low[2], high[2] + OPEN) if end == 0 else (low[2] - OPEN, high[2])
     return placed(box(low, high), pocket.center[0], axes)
 
 

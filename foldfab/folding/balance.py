@@ -2,13 +2,14 @@
 
 What a chain lacks to the height of its neighbours is given
 
-1. to the *thickness* of its panels, up to `THICKEST` times what they had: no part gets another one's bits;
-2. or to *pads*, plinths under its last hinge, up to `PAD_SHARE` of the height between its bases: its panels get shorter;
-3. and where neither holds, the highest chains sink first into *pockets* of their bases, no deeper than they must or
-   may: it is the bases that get weaker. What is still lacking is made up by thickness or by pads.
+1. to the *thickness* of its panels, up to `THICKEST` times what they had: no part is changed but itself, nor shortened;
+2. or to *pads*, plinths under its last hinge, up to `PAD_SHARE` of the height between its bases: panels get shorter;
+3. and where neither holds, the highest chains sink into *pockets* of their bases, no deeper than they must or may: the
+   bases get weaker, and a tongue has less of them to meet. What is still lacking is made up by 1 or 2.
 
 A pocket is a negative pad. It leaves a sound skin even where another one is let into the other face, and it is only
-made in a base whose parts lie at one height, along the hinges or across, and where no pin comes along the axis.
+made in a base whose parts lie at one height, along the hinges or across, and where no pin comes along the axis. All
+others see the base whole: that only rules something out.
 """
 
 from __future__ import annotations
@@ -62,7 +63,7 @@ def filled(variant: Variant, slack: float, panel: float, *, by_thickness: bool) 
 
 
 def sunk(problem: Problem, wanted: Variants) -> Iterator[Variants]:
-    """The same with the highest chains of each two bases in pockets: so deep that thickness does, and as deep as may be.
+    """The same with the highest chains of each two bases in pockets: as deep as thickness wants, then as they may be.
 
     Nothing where no base is sound enough, or all chains are equally high.
     """

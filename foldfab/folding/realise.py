@@ -47,33 +47,35 @@ def realised(
     if not _stays_connected(problem, scene, unit, chosen):
         gone = tuple(p for p in chosen if chosen[p].variant is None)
         return Clash((gone,), f"without {', '.join(gone)} the furniture would fall apart", cuts=True)
-    result: tuple[tuple[Chain, ...], Motion] | Clash = Clash((tuple(chosen),), "")
-    for by_thickness in (True, False):
-        made = _balanced(problem, unit, around, chosen, by_thickness=by_thickness)
-        result = made if isinstance(made, Clash) else _played(problem, unit, around, chosen, *made)
-        is_thicker = not isinstance(made, Clash) and any(c.panel > problem.sites[c.patch].panel for c in made[0])
-        if not isinstance(result, Clash) or not is_thicker:
-            break
+    result = _closed(problem, unit, around, chosen, if_alike=False)
     if isinstance(result, Clash) and result.is_unlike:
-        return _sunk(problem, unit, around, chosen) or result
+        kept = {p: o.variant for p, o in chosen.items() if o.variant is not None}
+        for variants in sunk(problem, kept):
+            lower = {p: replace(o, variant=variants.get(p)) for p, o in chosen.items()}
+            made = _closed(problem, unit, around, lower, if_alike=True)
+            if not isinstance(made, Clash):
+                return made
     return result
 
 
-def _sunk(
-    problem: Problem, unit: Unit, around: Surroundings, chosen: Mapping[str, Option]
-) -> tuple[tuple[Chain, ...], Motion] | None:
-    """The choice with its highest chains in pockets, where that lets it end flat."""
-    kept = {p: o.variant for p, o in chosen.items() if o.variant is not None}
-    for variants in sunk(problem, kept):
-        lower = {p: replace(o, variant=variants.get(p)) for p, o in chosen.items()}
-        for by_thickness in (True, False):
-            made = _balanced(problem, unit, around, lower, by_thickness=by_thickness)
-            # What cannot start together is not worth being played.
-            if not isinstance(made, Clash) and agree(made[0], problem.thickness.gap):
-                result = _played(problem, unit, around, lower, *made)
-                if not isinstance(result, Clash):
-                    return result
-    return None
+def _closed(
+    problem: Problem, unit: Unit, around: Surroundings, chosen: Mapping[str, Option], *, if_alike: bool
+) -> tuple[tuple[Chain, ...], Motion] | Clash:
+    """The chains and the motion with all chains as high as they have to be, by thickness or, if need be, by plinths.
+
+    Played only where chains may start together, where that is asked for.
+    """
+    result: tuple[tuple[Chain, ...], Motion] | Clash = Clash((tuple(chosen),), "")
+    for by_thickness in (True, False):
+        made = _balanced(problem, unit, around, chosen, by_thickness=by_thickness)
+        if isinstance(made, Clash):
+            result = made
+        elif not if_alike or agree(made[0], problem.thickness.gap):
+            result = _played(problem, unit, around, chosen, *made)
+        is_thicker = not isinstance(made, Clash) and any(c.panel > problem.sites[c.patch].panel for c in made[0])
+        if not isinstance(result, Clash) or not is_thicker:
+            break
+    return result
 
 
 def _played(

@@ -166,7 +166,8 @@ def _notes(problem: Problem, ordered: Ordered) -> tuple[str, ...]:
                 notes.append(f"{chain.patch} stands on plinths of {raised:.1f} mm so that the stack closes flat")
             for base, pad in zip((chain.anchor, chain.far), chain.pads, strict=True):
                 if pad < 0:
-                    notes.append(f"{base} has a pocket of {-pad:.1f} mm for {chain.patch} so that the stack closes flat")
+                    deep = f"{-pad:.1f} mm deep for {chain.patch}"
+                    notes.append(f"{base} has a pocket {deep} so that the stack closes flat")
             site = problem.sites[chain.patch]
             if float(np.ptp(chain.span)) > float(np.ptp(site.span)) + 0.01:
                 notes.append(

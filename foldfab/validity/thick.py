@@ -1,8 +1,8 @@
 """A solution as a linkage with thickness (section 5.6), from the data of its chains alone.
 
-Bases are the plates of their outlines less their pockets, with the plinths and the feet of the hinges on them; panels are slabs with half
-of their knuckles. Hinges stand where the solid's axes are. Of a panel, only what lies within the room that is cut for
-a knuckle is exempt from meeting what carries that knuckle; the panel may never reach into the rest of it.
+Bases are the plates of their outlines less their pockets, with the plinths and the feet of the hinges on them; panels
+are slabs with half of their knuckles. Hinges stand where the solid's axes are. Of a panel, only what lies within the
+room that is cut for a knuckle is exempt from meeting what carries that knuckle; it may never reach into the rest of it.
 """
 
 from __future__ import annotations

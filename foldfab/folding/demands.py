@@ -83,7 +83,8 @@ def _unlike(problem: Problem, unit: Unit) -> str:
         if pairs and not any(snap_alike(problem, own, a, b) for a, b in pairs):
             a, b = min(pairs, key=lambda pair: abs(pair[0].snap - pair[1].snap) - pair[0].give - pair[1].give)
             return (
-                f": {p} snaps by {a.snap:.2f} mm and {q} by {b.snap:.2f}, and their play covers {a.give + b.give:.2f}"
+                f": {p} snaps by {a.snap:.2f} mm and {q} by {b.snap:.2f}, and their play covers {a.give + b.give:.2f}, "
+                "be they thicker, on pads or in pockets"
             )
     return ""
 

@@ -71,9 +71,7 @@ def test_nothing_sinks_where_it_stands_on_a_pad(problem: Make, pair: Pair) -> No
 
 
 @pytest.mark.parametrize(("boards", "expected"), [(2.0, (0.4, 0.4)), (6.0, (1.6, 1.6)), (1.5, None)])
-def test_plates_decide_how_deep(
-    problem: Make, pair: Pair, boards: float, expected: tuple[float, float] | None
-) -> None:
+def test_plates_decide_how_deep(problem: Make, pair: Pair, boards: float, expected: tuple[float, float] | None) -> None:
     """Half of what a skin leaves of a plate, and 0.4 of the panels."""
     parts = tuple(replace(p, thickness=boards) if p.name in ("ground", "ceiling") else p for p in pair(74))
     found = depths(problem(parts))

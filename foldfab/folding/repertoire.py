@@ -92,6 +92,8 @@ class Repertoire:
     """Lanes whose conflicts are known."""
     tables: dict[object, Bools] = field(default_factory=dict)
     """Conflict tables between the options of two patches that were made already."""
+    agreed: dict[object, bool] = field(default_factory=dict)
+    """By two lanes whose snaps differ, by what they depend on, whether they can be balanced."""
     reach: dict[str, tuple[Array, Array]] = field(default_factory=dict)
     """By base of the unit, lower and upper corner (3,) of all that the unit sweeps, as seen from that base."""
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ import pytest
 from foldfab.folding.model import FoldSolution
 from foldfab.folding.solve import solve
 from foldfab.geometry.arrays import Array
-from foldfab.recipe.model import FoldOptions, Part, Printer, PrintOptions, Recipe
+from foldfab.recipe.model import FoldOptions, Part, Pattern, Printer, PrintOptions, Recipe
 from foldfab.scaffold.abstract import abstract
 from foldfab.scaffold.model import Scaffold
 
@@ -50,6 +51,17 @@ def leaning(name: str, foot: float, top: float, low: float, high: float, depth: 
     axes = np.array([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
     length = float(np.hypot(top - foot, high - low)) - K / cos
     return make_box(name, ((foot + top) / 2, y, (low + high) / 2), (K, depth, length), axes)
+
+
+def make_pair(
+    height: float, one: float | None = None, three: float | None = None, hinges: tuple[int, int] = (1, 3)
+) -> tuple[Part, ...]:
+    """Walls beside each other that have to take as many hinges as told, each of its own thickness."""
+    made = [board("ground", 0, 240), board("ceiling", height, 240)]
+    for name, x, thickness, count in (("one", -60, one, hinges[0]), ("three", 60, three, hinges[1])):
+        pin = Pattern(hinges=count, window=(0, 1))
+        made.append(replace(wall(name, x, 0, height), pin=pin, thickness=thickness))
+    return tuple(made)
 
 
 GROUND, CEILING = board("ground", 0), board("ceiling", 84)
@@ -159,6 +171,12 @@ def wall_at() -> Callable[..., Part]:
 def leaning_at() -> Callable[..., Part]:
     """Makes a wall that leans along x between two boards: name, foot, top, low, high, depth, y."""
     return leaning
+
+
+@pytest.fixture(scope="session")
+def pair() -> Callable[..., tuple[Part, ...]]:
+    """Makes a wall `one` and a wall `three` under one board: its height, their thickness, their hinges (1 and 3)."""
+    return make_pair
 
 
 @pytest.fixture(scope="session")

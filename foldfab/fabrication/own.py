@@ -21,7 +21,8 @@ from foldfab.fabrication.furniture import is_own, own_solid, placed_mesh
 from foldfab.fabrication.model import Assembly, Finding
 from foldfab.fabrication.outlines import outlined
 from foldfab.fabrication.places import Place, places, reaching, zone
-from foldfab.fabrication.shapes import Shape, union
+from foldfab.fabrication.plates import recesses
+from foldfab.fabrication.shapes import Shape, cut, union
 from foldfab.fabrication.solids import Outline, Solid
 from foldfab.fabrication.stopping import Stopped, reached
 from foldfab.fabrication.trial import Change, Trial, changed
@@ -85,9 +86,17 @@ def _candidates(trial: Trial, place: Place, plain: Shape) -> Iterator[tuple[Lite
     else:
         gap, panel = trial.assembly.solution.thickness.gap, trial.assembly.solution.thickness.panel
         motions = [_motion(trial, place, name) for name in sorted(trial.made) if name != place.name]
-        for shape in carved(place, plain, union(own), _stays(scaffold, place, parts, meshes), motions, gap, panel):
+        whole = cut(union(own), _recesses(trial, place))
+        for shape in carved(place, plain, whole, _stays(scaffold, place, parts, meshes), motions, gap, panel):
             yield "solid", shape
     yield "outline", outlined(place, plain, meshes)
+
+
+def _recesses(trial: Trial, place: Place) -> list[Shape]:
+    """What is cut from a base for the chains that sink into it; nothing from a panel."""
+    solution = trial.assembly.solution
+    bases = [b for b in solution.scaffold.bases if b.name == place.name]
+    return [shape for base in bases for shape in recesses(base, solution.chains, solution.thickness)]
 
 
 def _motion(trial: Trial, place: Place, name: str) -> Motion:

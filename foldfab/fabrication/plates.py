@@ -1,4 +1,4 @@
-"""Base plates: the outlines of the parts in a base patch, K thick, with the feet and plinths of their hinges."""
+"""Base plates: the outlines of the parts in a base patch, K thick, with feet, plinths and pockets of their hinges."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from foldfab.fabrication.printed import printed
 from foldfab.fabrication.shapes import Shape, box, cut, hull, placed, union
 from foldfab.fabrication.solids import pieces, without_crumbs
 from foldfab.fabrication.styles import style
-from foldfab.folding.anatomy import RIM, base_boxes, faces
+from foldfab.folding.anatomy import RIM, base_boxes, faces, pockets
 from foldfab.folding.mechanism import joints, tilts
 from foldfab.folding.model import Chain, Thickness
 from foldfab.geometry.arrays import Array
@@ -20,6 +20,10 @@ GROWTH = (0.0, 0.2, 0.5, 1.0, 2.0)
 """By how much outlines are grown, mm, until parts that touch are one body."""
 ROOT_SHARE = 0.5
 """How deep a foot reaches into its plate, as a share of its own thickness or the plate's."""
+WALL = 1.2
+"""Beside a pocket no wall thinner than this is left, mm."""
+OPEN = GROWTH[-1] + 0.1
+"""How far a pocket is cut beyond the faces and edges that it opens, mm: outlines may be grown."""
 
 
 def plate(base: BasePatch, chains: tuple[Chain, ...], thickness: Thickness) -> tuple[Shape, bool]:
@@ -32,7 +36,29 @@ def plate(base: BasePatch, chains: tuple[Chain, ...], thickness: Thickness) -> t
             solid, holes, pad = _mount(chain, base, thickness, end)
             posts, sockets, pads = posts + solid, sockets + holes, [*pads, pad]
     body, is_filled = _one_body(_members(base, thickness), pads)
-    return cut(union([body, *posts]), sockets), is_filled
+    return cut(union([cut(body, recesses(base, chains, thickness)), *posts]), sockets), is_filled
+
+
+def recesses(base: BasePatch, chains: tuple[Chain, ...], thickness: Thickness) -> list[Shape]:
+    """What is cut from a base, before anything stands on it, for the chains that sink into it; open posture."""
+    found = [(pockets(c, end, thickness), end) for c in chains for end in _ends(c, base.name) if c.pads[end] < 0]
+    edges = [base_boxes(base, thickness), *(pocket for pocket, _ in found)]
+    return [_recess(pocket, end, edges) for pocket, end in found]
+
+
+def _recess(pocket: Boxes, end: int, edges: list[Boxes]) -> Shape:
+    """A pocket (1,) as it is cut: on to an edge of the plate, or of another pocket, that is near."""
+    half, axes = pocket.half[0], pocket.axes[0]
+    low, high = -half, half.copy()
+    for beside in edges:
+        for i in range(2):
+            middle = (beside.center - pocket.center[0]) @ axes[i]
+            reach = np.abs(beside.axes @ axes[i] * beside.half).sum(1)
+            for edge in np.concatenate([middle - reach, middle + reach]).tolist():
+                low[i] = edge - OPEN if -half[i] - WALL < edge < -half[i] else low[i]
+                high[i] = edge + OPEN if half[i] < edge < half[i] + WALL else high[i]
+    low[2], high[2] = (low[2], high[2] + OPEN) if end == 0 else (low[2] - OPEN, high[2])
+    return placed(box(low, high), pocket.center[0], axes)
 
 
 def _members(base: BasePatch, thickness: Thickness) -> Boxes:
@@ -76,14 +102,15 @@ def _mount(chain: Chain, base: BasePatch, thickness: Thickness, end: int) -> tup
     marks = knuckles(chain.hinge_spans[0 if end == 0 else -1], thickness, chain.breaks)
     marks = marks if end == 0 else marks.mirrored
     pad, half = chain.pads[end], thickness.panel / 2
-    depth = thickness.axis_height + pad + ROOT_SHARE * min(thickness.panel, face.top - face.bottom)
+    plate = face.top - face.bottom
+    depth = thickness.axis_height + max(pad, 0.0) + ROOT_SHARE * min(thickness.panel, plate + min(pad, 0.0))
     solid, holes = style(thickness.hinge).carrier(marks, thickness, 0.0, 0.0)
     solid += feet(marks, thickness, depth)
     if pad > 0:
         solid.append(box((-half, span[0], -depth), (half, span[1], -thickness.axis_height)))
     low, high = (span if pad > 0 else hinge) + np.array([-RIM, RIM]) * (pad > 0)
     below = thickness.axis_height + pad
-    slab = box((-half - RIM, low, -below - (face.top - face.bottom)), (half + RIM, high, -below))
+    slab = box((-half - RIM, low, -below - plate), (half + RIM, high, -below))
     made = [placed(s, axis, frame) for s in solid]
     return made, [placed(h, axis, frame) for h in holes], placed(slab, axis, frame)
 

@@ -276,10 +276,11 @@ def _feet(assembly: Assembly) -> Iterator[tuple[str, tuple[str, ...], Array, Arr
             if base is None:
                 continue
             out, span = chain.rise * (1.0 if end == 0 else -1.0), tuple(map(float, chain.span))
-            marks = knuckles(chain.hinge_spans[-end], own, chain.breaks).carrier if chain.pads[end] == 0 else (span,)
-            foot = axis_of(chain, end) - out * (own.axis_height + chain.pads[end])
+            marks = knuckles(chain.hinge_spans[-end], own, chain.breaks).carrier if chain.pads[end] <= 0 else (span,)
+            pad = max(chain.pads[end], 0.0)
+            foot = axis_of(chain, end) - out * (own.axis_height + pad)
             for low, high in marks:
-                side, top = chain.across * own.panel / 2, out * (chain.pads[end] + own.panel)
+                side, top = chain.across * own.panel / 2, out * (pad + own.panel)
                 corners = foot + np.array([chain.along * low - side, chain.along * high + side])
                 corners = np.concatenate([corners, corners + top])
                 yield base, chain.panels, corners.min(0) - root, corners.max(0) + root

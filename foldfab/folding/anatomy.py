@@ -1,4 +1,4 @@
-"""What a thick chain is made of, as boxes: panel slabs, knuckles, and the feet and plinths on its bases.
+"""What a thick chain is made of, as boxes: panel slabs, knuckles, and the feet, plinths and pockets on its bases.
 
 Every clash test of the solver works on these (section 5.6): slabs are K thick, an inserted hinge's knuckle is a bar
 K × K around its axis, and a base hinge's foot reaches from the base face to K/2 beyond its axis.
@@ -139,10 +139,31 @@ def far_feet(chain: Chain, thickness: Thickness) -> Boxes:
     return _foot(chain, thickness, place, -chain.rise, chain.pads[1], chain.hinge_spans[-1])
 
 
+def pockets(chain: Chain, end: int, thickness: Thickness) -> Boxes:
+    """What is cut from the base at an end of the chain, 0 for its anchor, so that it can sink in (n,), open position.
+
+    The gap around all that its first panel from there sweeps below the face, with what may stop it behind its axis;
+    nothing where the chain does not sink.
+    """
+    depth, place = -chain.pads[end], chain.root if end == 0 else chain.root + start(chain)
+    if depth <= 0:
+        return Boxes(np.zeros((0, 3)), np.zeros((0, 3, 3)), np.zeros((0, 3)))
+    thickness, out = thickness.of(chain.panel), chain.rise if end == 0 else -chain.rise
+    folded, side = tilts(chain, np.ones(1))[0], 1.0 if end == 0 else -1.0
+    # Where the chain is one panel, a knuckle of its other base lies at its end.
+    beyond = thickness.panel / 2 if len(chain.lengths) == 1 else 0.0
+    reach = np.sign(side * folded[-end]) * (chain.lengths[-end] + beyond + 2 * thickness.gap)
+    low, high = sorted((-np.sign(reach) * thickness.foot_room, reach))
+    (first, last), floor = chain.span.tolist(), -thickness.axis_height
+    center = place + chain.across * ((low + high) / 2) + chain.along * ((first + last) / 2) + out * (floor + depth / 2)
+    half = np.array([[(high - low) / 2, (last - first) / 2 + thickness.gap, depth / 2]])
+    return Boxes(center[None], chain.basis[None], half)
+
+
 def _foot(chain: Chain, thickness: Thickness, axis: Array, outward: Array, pad: float, hinge: Array) -> Boxes:
-    """From the base face, which lies below the axis seen along `outward`, to the far side of the knuckle."""
+    """From the base face or the pocket's floor, below the axis seen along `outward`, to the far side of the knuckle."""
     thickness, span = thickness.of(chain.panel), chain.span if pad > 0 else hinge
-    low, high = -thickness.axis_height - pad, thickness.panel / 2
+    low, high = -thickness.axis_height - max(pad, 0.0), thickness.panel / 2
     start, end = span.tolist()
     center = axis + outward * ((low + high) / 2) + chain.along * ((start + end) / 2)
     half = np.array([[thickness.panel / 2, (end - start) / 2, (high - low) / 2]])

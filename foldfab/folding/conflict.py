@@ -2,8 +2,8 @@
 
 Two options conflict where their panels meet while both fold, where they drag the upper base along different ways
 (figure 12), or, with thickness, where their accordions snap so differently that the play in their hinges cannot
-cover it. Options of one patch form a clique and are never compared. What meets is found once for the pieces of all
-lanes of a unit together; tables between the options of two patches are made from that.
+cover it, however they are balanced. Options of one patch form a clique and are never compared. What meets is found once
+for the pieces of all lanes of a unit together; tables between the options of two patches are made from that.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from functools import cache
 
 import numpy as np
 
+from foldfab.folding.balance import can_agree
 from foldfab.folding.problem import Problem
 from foldfab.folding.repertoire import Lane, Repertoire, cuts_of, lane, regions, resting, swept
 from foldfab.folding.space import Batch, conflicts, meetings
@@ -86,7 +87,7 @@ def table(
     """
     key = (tuple(x.number for x in first), tuple(x.number for x in second), in_modes)
     if key not in own.tables:
-        made = _table(own, first, second, inside, in_modes=in_modes)
+        made = _table(problem, own, first, second, inside, in_modes=in_modes)
         own.tables[key] = made if made.any() else np.zeros((0, 0), dtype=bool)
     found = own.tables[key]
     return found if found.size else None
@@ -130,11 +131,22 @@ def drag_alike(a: Lane, b: Lane) -> bool:
     return a.drag is None or bool(np.abs(a.way - b.way).max() < SAME_PLACE)
 
 
-def snap_alike(a: Lane, b: Lane) -> bool:
-    """Whether the play in their hinges covers the difference between the snaps of two lanes that start together."""
+def snap_alike(problem: Problem, own: Repertoire, a: Lane, b: Lane) -> bool:
+    """Whether the play in their hinges covers the difference between the snaps of two lanes that start together.
+
+    As they are or, between the same two bases, balanced in one of the ways there are.
+    """
     if a.chain.far != b.chain.far or not a.chain.shape.comes_down or not b.chain.shape.comes_down:
         return True
-    return abs(a.snap - b.snap) <= a.give + b.give
+    if abs(a.snap - b.snap) <= a.give + b.give:
+        return True
+    if not _share_bases(a, b):
+        return False
+    key = tuple((x.chain.shape, x.variant, x.chain.panel, x.chain.anchor, x.chain.along.tobytes()) for x in (a, b))
+    if key not in own.agreed:
+        first, second = ((x.patch, x.variant, x.chain.span) for x in (a, b))
+        own.agreed[key] = can_agree(problem, first, second)
+    return own.agreed[key]
 
 
 def _share_bases(a: Lane, b: Lane) -> bool:
@@ -200,8 +212,9 @@ def _learn(own: Repertoire, met: Mapping[tuple[int, int], Bools]) -> None:
 
 
 def _table(
-    own: Repertoire, first: tuple[Lane, ...], second: tuple[Lane, ...], inside: Array, *, in_modes: bool
-) -> Bools:
+    problem: Problem, own: Repertoire, first: tuple[Lane, ...], second: tuple[Lane, ...], inside: Array, *,
+    in_modes: bool,
+) -> Bools:  # fmt: skip
     steps, count = inside.shape[1], len(inside)
     met = np.zeros((len(first), steps, len(second), steps), dtype=bool)
     never = np.zeros((len(first), len(second)), dtype=bool)
@@ -212,7 +225,7 @@ def _table(
                     pieces = own.pieces.get((min(p, q), max(p, q)))
                     if pieces is not None:
                         met[i, :, j] |= pieces if p < q else pieces.T
-            never[i, j] = not (in_modes or drag_alike(a, b)) or not snap_alike(a, b)
+            never[i, j] = not (in_modes or drag_alike(a, b)) or not snap_alike(problem, own, a, b)
     return _of_windows(met, never, inside, count)
 
 

@@ -75,14 +75,16 @@ def require_choices(problem: Problem, choices: Mapping[str, Choice]) -> None:
 
 def _unlike(problem: Problem, unit: Unit) -> str:
     """The accordions of a unit that snap too differently to be covered by the play in their hinges, as a clause."""
-    options = options_of(problem, unhindered(problem, repertoire(problem, unit)), np.zeros(3))
+    own = repertoire(problem, unit)
+    options = options_of(problem, unhindered(problem, own), np.zeros(3))
     lanes = {p: [x for k, x in enumerate(o.lanes) if _is_open(o, k)] for p, o in options.items()}
     for p, q in itertools.combinations(unit.patches, 2):
         pairs = [(a, b) for a in lanes[p] for b in lanes[q]]
-        if pairs and not any(snap_alike(a, b) for a, b in pairs):
+        if pairs and not any(snap_alike(problem, own, a, b) for a, b in pairs):
             a, b = min(pairs, key=lambda pair: abs(pair[0].snap - pair[1].snap) - pair[0].give - pair[1].give)
             return (
-                f": {p} snaps by {a.snap:.2f} mm and {q} by {b.snap:.2f}, and their play covers {a.give + b.give:.2f}"
+                f": {p} snaps by {a.snap:.2f} mm and {q} by {b.snap:.2f}, and their play covers {a.give + b.give:.2f}, "
+                "be they thicker, on pads or in pockets"
             )
     return ""
 

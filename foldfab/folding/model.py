@@ -21,6 +21,8 @@ KNUCKLE_WALL = 0.8
 """Least wall behind a socket, two lines of a 0.4 mm nozzle, mm."""
 PANEL_WEB = 1.2
 """Least length of whole panel between two hinges, mm."""
+POCKET_SKIN = 1.2
+"""Least of a base that is left below pockets, six layers of 0.2 mm, mm."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,7 +181,8 @@ class Chain:
     hinge_spans: Array
     """(m + 1, 2) extent along `along` relative to `root` of each hinge, mm; the last row is unused at a tip."""
     pads: tuple[float, float]
-    """Height of the fixed plinths at the anchor and at the far base, mm (the horizontal cropping of section 5.6)."""
+    """Height of the fixed plinths at the anchor and at the far base, mm (the horizontal cropping of section 5.6);
+    negative where it stands in a pocket of the base."""
     panel: float
     """K of its own panels, mm: more than the print's where the stack is balanced by thickness (figure 19)."""
     breaks: tuple[tuple[float, float], ...] = ()

@@ -9,7 +9,8 @@ import networkx as nx
 import numpy as np
 
 from foldfab.folding import basic, press
-from foldfab.folding.basic import Option, Variant
+from foldfab.folding.balance import agree, filled, stack, sunk
+from foldfab.folding.basic import Option
 from foldfab.folding.mechanism import peak
 from foldfab.folding.model import Chain
 from foldfab.folding.options import Alike
@@ -21,9 +22,6 @@ from foldfab.folding.simulate import clashes
 from foldfab.folding.surroundings import Surroundings
 from foldfab.folding.units import Unit
 from foldfab.folding.work import PLAYING
-
-THICKEST = 1.5
-"""Panels may be this many times as thick as the others where that closes a stack flat."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +41,8 @@ class Clash:
     """Whether it is about deletions that would leave the furniture in more than one piece."""
     also: tuple[Clash, ...] = ()
     """What else does not work, for other reasons."""
+    is_unlike: bool = False
+    """Whether chains fold to heights, or snap by amounts, that could not be balanced."""
 
 
 def realised(
@@ -52,10 +52,31 @@ def realised(
     if not _stays_connected(problem, scene, unit, chosen):
         gone = tuple(p for p in chosen if chosen[p].variant is None)
         return Clash((gone,), f"without {', '.join(gone)} the furniture would fall apart", cuts=True)
+    result = _closed(problem, unit, around, chosen, if_alike=False)
+    if isinstance(result, Clash) and result.is_unlike:
+        kept = {p: o.variant for p, o in chosen.items() if o.variant is not None}
+        for variants in sunk(problem, kept):
+            lower = {p: replace(o, variant=variants.get(p)) for p, o in chosen.items()}
+            made = _closed(problem, unit, around, lower, if_alike=True)
+            if not isinstance(made, Clash):
+                return made
+    return result
+
+
+def _closed(
+    problem: Problem, unit: Unit, around: Surroundings, chosen: Mapping[str, Option], *, if_alike: bool
+) -> tuple[tuple[Chain, ...], Motion] | Clash:
+    """The chains and the motion with all chains as high as they have to be, by thickness or, if need be, by plinths.
+
+    Played only where chains may start together, where that is asked for.
+    """
     result: tuple[tuple[Chain, ...], Motion] | Clash = Clash((tuple(chosen),), "")
     for by_thickness in (True, False):
         made = _balanced(problem, unit, around, chosen, by_thickness=by_thickness)
-        result = made if isinstance(made, Clash) else _played(problem, unit, around, chosen, *made)
+        if isinstance(made, Clash):
+            result = made
+        elif not if_alike or agree(made[0], problem.thickness.gap):
+            result = _played(problem, unit, around, chosen, *made)
         is_thicker = not isinstance(made, Clash) and any(c.panel > problem.sites[c.patch].panel for c in made[0])
         if not isinstance(result, Clash) or not is_thicker:
             break
@@ -80,7 +101,7 @@ def _played(
             beside = _most_unlike(chain, chains, way)
             blamed = (chain.patch, beside) if beside else tuple(chosen)
             text = f"{chain.patch} cannot follow {beside or 'its unit'}: its hinges would have to give {worst:.2f} mm"
-            return Clash((blamed,), f"{text}, and give {limit:.2f} mm", holds_for="any window")
+            return Clash((blamed,), f"{text}, and give {limit:.2f} mm", "any window", is_unlike=True)
     met = clashes(unit, problem.tree.number, chains, motion, around, problem.thickness)
     if met:
         reason = _told(*next(iter(met.items())))
@@ -125,12 +146,12 @@ def _balanced(
 ) -> tuple[tuple[Chain, ...], dict[str, float]] | Clash:
     """The chains with what lets all of them end flat together, and the ways of the bases.
 
-    What a chain lacks to the height of its neighbours is given to its panels, where they would not get thicker than
-    `THICKEST` times the others, or to a plinth under its last hinge.
+    What a chain lacks to the height of its neighbours is given to its panels where they may get so thick, or to a
+    plinth under its last hinge.
     """
     clear = {pair: clear_height(problem, *pair) for pair in _pairs(problem, unit, around)}
     thick = problem.thickness
-    stacks = {p: _stack(problem, p, o.variant) for p, o in chosen.items() if o.variant is not None}
+    stacks = {p: stack(problem, p, o.variant) for p, o in chosen.items() if o.variant is not None}
     least = {pair: clear[pair] - flat for pair, (flat, _, _) in around.limits.items() if np.isfinite(flat)}
     for patch, height in stacks.items():
         site = problem.sites[patch]
@@ -144,14 +165,14 @@ def _balanced(
         assert variant is not None
         if site.far is not None:
             slack = clear[site.anchor, site.far] - (way[site.far] - way[site.anchor]) - stacks[patch]
-            variant = _filled(variant, max(slack, 0.0), site.panel, by_thickness=by_thickness)
+            variant = filled(variant, slack, site.panel, by_thickness=by_thickness)
         span = basic.window_span(site, chosen[patch].window, problem.options.shrink_steps, thick)
         chain = basic.chain(site, variant, span, thick) if span is not None else None
-        if chain is None or sum(variant.pads) > PAD_SHARE * site.clear:
+        if chain is None or sum(max(pad, 0.0) for pad in variant.pads) > PAD_SHARE * site.clear:
             highest = max((p for p in stacks if problem.sites[p].far == site.far), key=lambda p: (stacks[p], p))
             blamed = (patch,) if highest == patch else (patch, highest)
             text = f"{patch} is too short to end flat on a plinth of {sum(variant.pads):.1f} mm beside {highest}"
-            return Clash((blamed,), text, holds_for="any window")
+            return Clash((blamed,), text, holds_for="any window", is_unlike=True)
         chains.append(chain)
     return tuple(chains), way
 
@@ -159,20 +180,6 @@ def _balanced(
 def _pairs(problem: Problem, unit: Unit, around: Surroundings) -> set[tuple[str, str]]:
     held = {(problem.sites[p].anchor, problem.sites[p].far) for p in unit.patches}
     return {(a, b) for a, b in held if b is not None} | set(around.limits)
-
-
-def _filled(variant: Variant, slack: float, panel: float, *, by_thickness: bool) -> Variant:
-    """The variant that takes up `slack` mm more when folded."""
-    extra = slack / (variant.hinges + 1)
-    if by_thickness and panel + extra <= THICKEST * panel:
-        return replace(variant, extra=extra)
-    return replace(variant, pads=(variant.pads[0], variant.pads[1] + slack))
-
-
-def _stack(problem: Problem, patch: str, variant: Variant) -> float:
-    site = problem.sites[patch]
-    thick = problem.thickness.of(site.panel)
-    return thick.stack(variant.hinges + 1, has_upper_base=site.far is not None) + sum(variant.pads)
 
 
 def _stays_connected(problem: Problem, scene: Scene, unit: Unit, chosen: Mapping[str, Option]) -> bool:

@@ -108,6 +108,8 @@ class Repertoire:
     """Conflict tables between the options of two patches that were made already."""
     least: dict[str, Place] = field(default_factory=dict)
     """By patch, its lane and window in the cheapest choice without conflicts, where that is known for certain."""
+    agreed: dict[object, bool] = field(default_factory=dict)
+    """By two lanes whose snaps differ, by what they depend on, whether they can be balanced."""
     reach: dict[str, tuple[Array, Array]] = field(default_factory=dict)
     """By base of the unit, lower and upper corner (3,) of all that the unit sweeps, as seen from that base."""
 

@@ -185,10 +185,13 @@ def _notes(problem: Problem, ordered: Ordered) -> tuple[str, ...]:
         for chain in fold.chains:
             if chain.panel > problem.sites[chain.patch].panel + 0.01:
                 notes.append(f"{chain.patch} is {chain.panel:.1f} mm thick so that the stack closes flat")
-            if sum(chain.pads) > 0.01:
-                notes.append(
-                    f"{chain.patch} stands on plinths of {sum(chain.pads):.1f} mm so that the stack closes flat"
-                )
+            raised = sum(max(pad, 0.0) for pad in chain.pads)
+            if raised > 0.01:
+                notes.append(f"{chain.patch} stands on plinths of {raised:.1f} mm so that the stack closes flat")
+            for base, pad in zip((chain.anchor, chain.far), chain.pads, strict=True):
+                if pad < 0:
+                    deep = f"{-pad:.1f} mm deep for {chain.patch}"
+                    notes.append(f"{base} has a pocket {deep} so that the stack closes flat")
             site = problem.sites[chain.patch]
             if float(np.ptp(chain.span)) > float(np.ptp(site.span)) + 0.01:
                 notes.append(

@@ -11,6 +11,7 @@ from foldfab.geometry.arrays import Array
 from foldfab.scaffold.model import Patch
 from foldfab.validity.claim import axes_of, frame
 from foldfab.validity.model import Violation
+from foldfab.validity.pockets import unsound
 from foldfab.validity.thick import faces
 
 EXACT = 1e-3
@@ -21,7 +22,7 @@ FACTOR = 1e-9
 
 def contradictions(solution: FoldSolution) -> tuple[Violation, ...]:
     """What in a solution contradicts itself or its scaffold, before anything moves."""
-    found = [*_of_modifications(solution), *_of_steps(solution)]
+    found = [*_of_modifications(solution), *_of_steps(solution), *_of_pockets(solution)]
     changes = {change.patch: change for change in solution.modifications}
     patches = {patch.name: patch for patch in solution.scaffold.patches}
     for chain in solution.chains:
@@ -68,6 +69,11 @@ def _of_steps(solution: FoldSolution) -> Iterator[tuple[str, float, str]]:
             yield chain.patch, 0.0, f"folds in {times} steps instead of one"
 
 
+def _of_pockets(solution: FoldSolution) -> Iterator[tuple[str, float, str]]:
+    """What chains sink into stays sound."""
+    yield from unsound(solution, {b.name: faces(b, solution.thickness) for b in solution.scaffold.bases})
+
+
 def _of_chain(solution: FoldSolution, chain: Chain, change: Modification, patch: Patch) -> Iterator[tuple[float, str]]:
     """A chain is its modified patch."""
     count, is_t = len(chain.lengths) - 1, chain.far is None
@@ -111,7 +117,7 @@ def _of_place(solution: FoldSolution, chain: Chain, patch: Patch) -> Iterator[tu
         (chain.anchor, chain.far), ends, chain.pads, (chain.rise[2], -chain.rise[2]), strict=True
     ):
         wanted = _axis_height(solution, base, chain, patch, float(out), pad)
-        if abs(height - wanted) > EXACT or pad < 0:
+        if abs(height - wanted) > EXACT or (base is None and pad < 0):
             where = f"over {base}" if base else "at its tip"
             yield abs(height - wanted), f"ends {abs(height - wanted):.2f} mm off its place {where}"
 

@@ -1,8 +1,8 @@
 """A solution as a linkage with thickness (section 5.6), from the data of its chains alone.
 
-Bases are the plates of their outlines with the plinths and the feet of the hinges on them; panels are slabs with half
-of their knuckles. Hinges stand where the solid's axes are. Of a panel, only what lies within the room that is cut for
-a knuckle is exempt from meeting what carries that knuckle; the panel may never reach into the rest of it.
+Bases are the plates of their outlines less their pockets, with the plinths and the feet of the hinges on them; panels
+are slabs with half of their knuckles. Hinges stand where the solid's axes are. Of a panel, only what lies within the
+room that is cut for a knuckle is exempt from meeting what carries that knuckle; it may never reach into the rest of it.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ from foldfab.validity.claim import (
     step_of,
 )
 from foldfab.validity.model import Body, Folding, Hinge, Linkage
+from foldfab.validity.pockets import pockets_in, without
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -97,6 +98,7 @@ def _plate(solution: FoldSolution, base: BasePatch) -> Boxes:
         axes = np.stack([along, np.cross(UP, along), UP])
         half = np.array([*np.maximum(outline.half, least), (top - bottom) / 2])
         made.append(Boxes(np.array([[*outline.center, (bottom + top) / 2]]), axes[None], half[None]))
+    made = [without(stacked(made), pockets_in(solution, base.name))]
     for chain in solution.chains:
         points = axes_of(chain.root, chain, chain.lengths, chain.offsets, chain.lean)
         thick = thickness.of(chain.panel)
@@ -108,7 +110,7 @@ def _plate(solution: FoldSolution, base: BasePatch) -> Boxes:
 
 
 def _mount(chain: Chain, thick: Thickness, axis: Array, out: Array, pad: float, hinge: Array) -> list[Boxes]:
-    """The foot of a base hinge, from the face to the far side of its knuckles, and its plinth where it has one."""
+    """The foot of a base hinge, from the face or the pocket's floor to the far side of its knuckles, and its plinth."""
     foot = [_upright(chain, thick, axis, out, -thick.axis_height, 0.0, hinge), *_knuckle(chain, thick, axis, hinge)]
     low = -thick.axis_height - pad
     return [*foot, _upright(chain, thick, axis, out, low, -thick.axis_height, chain.span)] if pad > 0 else foot

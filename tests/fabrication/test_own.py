@@ -200,6 +200,18 @@ def test_own_shapes_in_other_postures(posture: Posture, table: Recipe, scaffold:
     assert any(b.volume != body(plain, b.name).volume for b in own.bodies)
 
 
+def test_a_base_keeps_its_pockets_in_its_own_shape(
+    recipe: Callable[..., Recipe], scaffold: Callable[..., Scaffold], pair: Callable[..., tuple[Part, ...]]
+) -> None:
+    parts = tuple(replace(p, shape=bowed(p, 0.0, 4.0)) if p.name == "ground" else p for p in pair(74))
+    wanted = recipe(parts, slanting=False)
+    solution = solve(scaffold(replace(wanted, print=replace(wanted.print, shape="own"))))
+    assert solution.chain("three").pads[0] == pytest.approx(-1.4)
+    own, plain = (build(replace_shape(solution, look), "open") for look in ("own", "plain"))
+    assert body(own, "ground").volume != body(plain, "ground").volume
+    assert not [f for f in own.findings if f.code in ("plain", "outline")]
+
+
 def replace_shape(solution: FoldSolution, look: Look) -> FoldSolution:
     recipe = solution.scaffold.recipe
     kept = replace(recipe, print=replace(recipe.print, shape=look))

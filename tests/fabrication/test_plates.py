@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 
 from foldfab.fabrication import plates, solids
 from foldfab.fabrication.printed import printed
 from foldfab.fabrication.solids import Solid
+from foldfab.fabrication.walls import thin_sides
+from foldfab.folding import anatomy
 from foldfab.folding.model import Chain, Thickness
 from foldfab.scaffold.model import BasePatch
 
@@ -62,6 +65,38 @@ def test_a_plinth_raises_the_axis(make_chain: Callable[..., Chain], make_base: C
         for pad in (0.0, 4.3)
     ]
     assert heights[1] - heights[0] == pytest.approx(4.3)
+
+
+@pytest.mark.parametrize("beside", [20.0, 5.0, 0.9, 0.2, -1.0])
+def test_a_pocket_is_cut_whole_or_open_to_a_near_edge(
+    beside: float, make_chain: Callable[..., Chain], make_base: Callable[..., BasePatch],
+    assert_printable: Callable[[Solid], None],
+) -> None:  # fmt: skip
+    """No thin wall is left beside it, and feet stand on its floor."""
+    chain = make_chain(THICKNESS, pad=-1.4)
+    room = anatomy.pockets(chain, 0, THICKNESS)[0]
+    width = float(room.half[1]) + beside
+    base = make_base((0, 0, 60, width))
+    made = solids.tidied(plate(base, (chain,))[0])
+    assert_printable(made)
+    assert thin_sides(made) == 0
+    skin = solids.box((-60, -width, -2), (60, width, 2 - 1.4 - 0.01))
+    assert solids.common(made, skin).volume() == pytest.approx(120 * 2 * width * 2.59, rel=1e-6)
+    # Only feet, no wider than the panel is thick, stand in it.
+    left = solids.common(made, solids.placed(solids.box(-room.half + 0.01, room.half - 0.01), room.center, room.axes))
+    assert 0 < left.volume() < 4 * 30 * 1.4
+
+
+def test_pockets_beside_each_other_leave_no_thin_wall(
+    make_chain: Callable[..., Chain], make_base: Callable[..., BasePatch]
+) -> None:
+    chain = make_chain(THICKNESS, pad=-1.4)
+    room = anatomy.pockets(chain, 0, THICKNESS)[0]
+    for apart in (0.2, 1.0, 1.5):
+        shift = 2 * float(room.half[1]) + apart
+        other = replace(chain, patch="other", root=chain.root + shift * chain.along)
+        made = solids.tidied(plate(make_base((0, shift / 2, 80, 80)), (chain, other))[0])
+        assert thin_sides(made) == 0
 
 
 def plate(base: BasePatch, chains: tuple[Chain, ...]) -> tuple[Solid, bool]:

@@ -7,10 +7,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from foldfab.folding import anatomy
+from foldfab.folding import anatomy, mechanism
 from foldfab.folding.model import FoldSolution, Thickness
 from foldfab.geometry.arrays import Array
 from foldfab.geometry.boxes import Boxes, bounds
+from foldfab.recipe.model import Part
 from foldfab.scaffold.model import Scaffold
 
 Make = Callable[..., FoldSolution]
@@ -95,3 +96,41 @@ def test_folded_panels_lie_above_the_face_and_below_the_stack(solution: Make, na
         own = made.thickness.of(chain.panel)
         stack = own.stack(len(chain.lengths), has_upper_base=chain.far is not None) + sum(chain.pads)
         assert low[2] >= face + GAP / 2 - 1e-9 and high[2] <= face + stack + K
+
+
+@pytest.fixture(scope="module")
+def sunk(solution: Make, pair: Callable[..., tuple[Part, ...]]) -> FoldSolution:
+    """Whose chain `three` stands in pockets of both its bases."""
+    return solution(pair(74), slanting=False)
+
+
+@pytest.mark.parametrize("end", [0, 1])
+def test_a_pocket_leaves_the_gap_around_all_that_sinks_into_it(sunk: FoldSolution, end: int) -> None:
+    chain = sunk.chain("three")
+    room = anatomy.pockets(chain, end, sunk.thickness)[0]
+    base = sunk.scaffold.base((chain.anchor, chain.far or "")[end])
+    face, out = anatomy.faces(base, sunk.thickness), chain.rise * (1.0 if end == 0 else -1.0)
+    top = face.top if end == 0 else -face.bottom
+    assert float(room.center @ out + room.half[2]) == pytest.approx(top)
+    assert 2 * room.half[2] == pytest.approx(-chain.pads[end])
+    progress = np.linspace(0.0, 1.0, 400)
+    shift = mechanism.reach(chain, progress)[:, 1]
+    down = (shift - shift[0]) if end == 1 else np.zeros(len(progress))
+    moving = anatomy.moving_boxes(chain, sunk.thickness, progress)
+    signs = np.array(np.meshgrid(*[(-1, 1)] * 3)).reshape(3, -1).T
+    points = moving.center[..., None, :] + np.einsum("cj,knj,knji->knci", signs, moving.half, moving.axes)
+    points[..., 2] -= down[:, None, None]
+    below = points[points @ out < top + GAP - 1e-6]
+    inside = np.abs((below - room.center) @ room.axes.T)
+    assert len(below) and (inside[:, :2] <= room.half[:2] - GAP + 1e-6).all()
+    assert ((below - room.center) @ out >= -room.half[2] + GAP - 1e-6).all()
+
+
+def test_feet_in_a_pocket_stand_on_its_floor(sunk: FoldSolution) -> None:
+    chain = sunk.chain("three")
+    (low, _), (_, high) = (corners(f(chain, sunk.thickness)) for f in (anatomy.anchor_feet, anatomy.far_feet))
+    assert (low[2], high[2]) == pytest.approx((2 - 1.4, 72 + 1.4))
+
+
+def test_who_does_not_sink_has_no_pocket(sunk: FoldSolution) -> None:
+    assert not any(len(anatomy.pockets(sunk.chain("one"), end, sunk.thickness)) for end in (0, 1))

@@ -181,7 +181,7 @@ def test_options_conflict_where_their_windows_hold_pieces_that_meet_or_lanes_nev
         pieces = pieces if a.number < b.number else pieces.T
         for (v, one), (w, other) in itertools.product(enumerate(every), enumerate(every)):
             meets = bool(pieces[one[0] : one[1], other[0] : other[1]].any())
-            agree = drag_alike(a, b) and snap_alike(a, b)
+            agree = drag_alike(a, b) and snap_alike(made, own, a, b)
             expected[i * len(every) + v, j * len(every) + w] = meets or not agree
     assert found.tolist() == expected.tolist()
     # The other way round it is the same.
@@ -255,19 +255,37 @@ def test_lanes_of_other_bases_drag_as_they_like(problem: Make) -> None:
 
 
 def test_snaps_are_alike_within_the_play_of_both(problem: Make) -> None:
-    own = only(problem("deep_box"))
+    made = problem("deep_box")
+    own = only(made)
     a, b = lanes_of(own, "back", "in-place", 1)[0], lanes_of(own, "side", "in-place", 1)[0]
-    assert a.snap > 0 and snap_alike(a, b)
-    give = a.give + b.give
-    assert snap_alike(a, replace(b, snap=a.snap + 0.99 * give)) and snap_alike(replace(b, snap=a.snap + 0.99 * give), a)
-    assert not snap_alike(a, replace(b, snap=a.snap + 1.01 * give))
-    assert not snap_alike(replace(b, snap=a.snap + 1.01 * give), a)
+    assert a.snap > 0 and snap_alike(made, own, a, b)
+    limit = a.snap + 0.99 * (a.give + b.give)
+    assert snap_alike(made, own, a, replace(b, snap=limit)) and snap_alike(made, own, replace(b, snap=limit), a)
+
+
+@pytest.mark.parametrize(("height", "one", "three", "agree"), [
+    (104, None, None, True),  # as they are
+    (60, 6.0, None, True),  # thicker: one and three snap by what three panels of 4 mm do
+    (74, None, None, True),  # in pockets
+    (70, None, None, False),
+    (84, 2.5, 6.0, False),
+])  # fmt: skip
+def test_snaps_are_alike_that_can_be_balanced(
+    problem: Make, pair: Callable[..., tuple[Part, ...]], height: float, one: float | None, three: float | None,
+    agree: bool,
+) -> None:  # fmt: skip
+    made = problem(pair(height, one, three), slanting=False)
+    own = whole(made, made.unit_of["one"])
+    a, b = lanes_of(own, "one", "in-place", 1)[0], lanes_of(own, "three", "in-place", 3)[0]
+    assert snap_alike(made, own, a, b) == snap_alike(made, own, b, a) == agree
 
 
 def test_who_does_not_come_straight_down_has_no_snap_to_share(problem: Make, levels: tuple[Part, ...]) -> None:
-    own = only(problem("deep_box"))
+    made = problem("deep_box")
+    own = only(made)
     slanted = lanes_of(own, "back", "slanted", 0)[0]
-    assert snap_alike(slanted, replace(lanes_of(own, "side", "in-place", 1)[0], snap=50.0))
-    many = only(problem(levels))
+    assert snap_alike(made, own, slanted, replace(lanes_of(own, "side", "in-place", 1)[0], snap=50.0))
+    made = problem(levels)
+    many = only(made)
     lower, side = many.plain["lower"][0], many.plain["side"][0]
-    assert snap_alike(lower, replace(side, snap=50.0))
+    assert snap_alike(made, many, lower, replace(side, snap=50.0))

@@ -15,7 +15,9 @@ import pytest
 import foldfab
 from foldfab.folding.model import Chain, FoldSolution
 from foldfab.geometry.arrays import Array
-from foldfab.validity import thick
+from foldfab.geometry.boxes import Boxes, grown, overlaps
+from foldfab.recipe.model import Part
+from foldfab.validity import pockets, thick
 from foldfab.validity.model import Body, Folding, Hinge, Linkage
 from foldfab.validity.verify import judged, verdict, violations
 
@@ -238,3 +240,97 @@ def test_a_base_that_tips_over(sheet: Callable[..., Body], hinge: Callable[..., 
     bodies = [sheet("ground", (0, 0), (60, 0), base=True), sheet("lid", (10, 5), (60, 5), base=True)]
     made = folding(bodies, [hinge("ground", "lid", 10, 5)], lambda t: np.outer(np.sin(np.pi * t), [-0.5]))
     assert [(v.kind, v.parts) for v in judged(made)] == [("flat", ("lid",))]
+
+
+@pytest.fixture(scope="module")
+def sunk(solution: Solutions, pair: Callable[..., tuple[Part, ...]]) -> FoldSolution:
+    """Whose chain `three` stands in a pocket of 1.4 mm in each of its bases of 4 mm."""
+    return solution(pair(74), slanting=False)
+
+
+def test_chains_in_pockets_are_valid(sunk: FoldSolution) -> None:
+    assert min(sunk.chain("three").pads) < 0 and violations(sunk) == ()
+
+
+def test_a_pocket_that_is_too_deep(sunk: FoldSolution) -> None:
+    """A skin of 1.2 mm has to be left."""
+    chain = sunk.chain("three")
+    for more, left in ((1.5, "1.10"), (3.0, "0.00")):
+        pads = (chain.pads[0] - more, chain.pads[1])
+        lengths = chain.lengths + more / len(chain.lengths)
+        deeper = with_chain(sunk, "three", root=chain.root - [0, 0, more], pads=pads, lengths=lengths)
+        (found,) = violations(deeper)
+        assert found.kind == "start" and found.parts == ("three",)
+        assert found.text.endswith(f"sinks {1.4 + more:.2f} mm into ground and leaves {left} mm of it")
+
+
+def test_a_pocket_that_is_not_as_deep_as_the_chain_stands(sunk: FoldSolution) -> None:
+    (found, *_) = violations(with_chain(sunk, "three", pads=(-1.0, sunk.chain("three").pads[1])))
+    assert found.kind == "start" and found.text.endswith("three ends 0.40 mm off its place over ground")
+
+
+def test_a_chain_that_sinks_where_there_is_no_pocket(sunk: FoldSolution, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(thick, "pockets_in", lambda solution, base: [])
+    found = [v for v in violations(sunk) if v.kind == "collision"]
+    assert {v.parts for v in found} == {("ground", "three/1"), ("ceiling", "three/4")}
+    assert all(v.amount == pytest.approx(1.1, abs=0.06) for v in found)
+
+
+def test_a_chain_that_folds_out_of_its_pocket(sunk: FoldSolution) -> None:
+    """The pocket is where its panels lie, and nowhere else."""
+    chain = sunk.chain("three")
+    for base, end in (("ground", 0), ("ceiling", 1)):
+        (pocket,) = pockets.pockets_in(sunk, base)
+        aside = (pocket.room.center[0] - chain.root) @ chain.across * np.sign(chain.turn)
+        assert aside > 0 and pocket.up == (1.0, -1.0)[end] and pocket.depth == pytest.approx(1.4)
+
+
+@pytest.fixture(scope="module")
+def storeys(solution: Solutions, pair: Callable[..., tuple[Part, ...]]) -> FoldSolution:
+    """Two such pairs on top of each other: the middle board has pockets in both faces."""
+    walls = pair(74)
+    upper = [replace(p, name=f"{p.name}-up", center=p.center + np.array([0.0, 0.0, 74.0])) for p in walls[1:]]
+    return solution((*walls, *upper), slanting=False)
+
+
+def test_pockets_in_both_faces_leave_a_skin(storeys: FoldSolution) -> None:
+    assert violations(storeys) == () and len(pockets.pockets_in(storeys, "ceiling")) == 2
+
+
+def test_pockets_that_overlap(storeys: FoldSolution) -> None:
+    chain = storeys.chain("three-up")
+    deeper = with_chain(
+        storeys, "three-up", root=chain.root - [0, 0, 0.5], pads=(chain.pads[0] - 0.5, chain.pads[1]),
+        lengths=chain.lengths + 0.5 / len(chain.lengths),
+    )  # fmt: skip
+    (found,) = violations(deeper)
+    assert found.kind == "start" and found.parts == ("three",)
+    assert found.text.endswith("three sinks into ceiling below the pocket of three-up, 0.70 mm apart")
+    # Where one does not lie over the other, each may be as deep.
+    heights = {b.name: (b.bottom - 2.0, b.top + 2.0) for b in storeys.scaffold.bases}
+    aside = with_chain(deeper, "three-up", root=deeper.chain("three-up").root - [60, 0, 0])
+    assert list(pockets.unsound(deeper, heights)) and not list(pockets.unsound(aside, heights))
+
+
+def test_a_pocket_in_a_base_of_several_heights(sunk: FoldSolution) -> None:
+    ground, ceiling = sunk.scaffold.bases
+    outlines = (replace(ground.outlines[0], extent=(-2.0, 2.0)),)
+    stepped = replace(sunk.scaffold, bases=(replace(ground, outlines=outlines), ceiling))
+    (found,) = violations(replace(sunk, scaffold=stepped))
+    assert found.text.endswith("three sinks into ground, whose parts lie at several heights")
+
+
+def test_a_plate_less_a_pocket_is_all_the_rest(sunk: FoldSolution) -> None:
+    (pocket,) = pockets.pockets_in(sunk, "ground")
+    plate = Boxes(np.zeros((1, 3)), np.eye(3)[None], np.array([[120.0, 40.0, 2.0]]))
+    left = pockets.without(plate, [pocket])
+    volumes = [8 * float(boxes.half.prod(axis=1).sum()) for boxes in (plate, left, pocket.room)]
+    assert volumes[1] == pytest.approx(volumes[0] - volumes[2])
+    i, j = np.triu_indices(len(left), 1)
+    assert not overlaps(grown(left[i], -1e-6), left[j]).any()
+    assert not overlaps(grown(left, -1e-6), Boxes(*(np.repeat(a, len(left), 0) for a in (
+        pocket.room.center, pocket.room.axes, pocket.room.half)))).any()  # fmt: skip
+    # One that lies askew stays whole.
+    spin = np.array([[0.6, 0.8, 0.0], [-0.8, 0.6, 0.0], [0.0, 0.0, 1.0]])
+    askew = Boxes(plate.center, spin[None], plate.half)
+    assert pockets.without(askew, [pocket]) is not None and len(pockets.without(askew, [pocket])) == 1

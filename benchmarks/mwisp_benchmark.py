@@ -30,6 +30,7 @@ from importlib.util import find_spec
 from itertools import combinations, product
 from multiprocessing import get_context
 from pathlib import Path
+from typing import Any
 
 import networkx as nx
 import numpy as np
@@ -213,14 +214,15 @@ def kept() -> Iterator[dict[object, ConflictGraph]]:
     own = choose.cheapest
 
     def keeping(
-        costs: list[Array], conflicts: Mapping[tuple[int, int], Bools], forbidden: frozenset[Combination] = frozenset()
-    ) -> Picked:
+        costs: list[Array], conflicts: Mapping[tuple[int, int], Bools],
+        forbidden: frozenset[Combination] = frozenset(), *rest: Any,
+    ) -> Picked:  # fmt: skip
         tables = tuple((pair, conflicts[pair].tobytes()) for pair in sorted(conflicts))
         key = (tuple(price.tobytes() for price in costs), tables, forbidden)
         if key not in graphs:
             copied = {pair: excluded.copy() for pair, excluded in conflicts.items()}
             graphs[key] = ConflictGraph([price.copy() for price in costs], copied, forbidden)
-        return own(costs, conflicts, forbidden)
+        return own(costs, conflicts, forbidden, *rest)
 
     # Wherever it was imported to.
     users = [module for name, module in sys.modules.items() if name.startswith("foldfab.")]

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from foldfab.errors import AbstractionError, FoldingError, LossError
-from foldfab.folding.work import Work
 from foldfab.geometry.arrays import Array
 from foldfab.recipe.hinges import hinge_problem
 from foldfab.recipe.model import Posture, Recipe
@@ -16,6 +15,7 @@ from foldfab.scaffold.directions import AXES, title
 
 if TYPE_CHECKING:
     from foldfab.folding.model import FoldSolution
+    from foldfab.folding.work import Work
     from foldfab.scaffold.model import Scaffold
 
 MARGIN_THICKNESSES = 2.0
@@ -39,6 +39,8 @@ def along(recipe: Recipe, direction: Array) -> FoldSolution:
         AbstractionError: the parts make no scaffold along it; the message names directions that would do.
         FoldingError: nothing folds, or it does not fit.
     """
+    from foldfab.folding.work import Work
+
     if not recipe.print.may_thin:
         return _fitted(recipe, direction, Work(recipe.fold.time_limit))
     found, loses = _by_thickness(recipe, direction)
@@ -56,6 +58,8 @@ def _by_thickness(recipe: Recipe, direction: Array) -> tuple[list[FoldSolution],
 
     Where parts have to go in any case, it is solved only once thinner plates are known to spare none of them.
     """
+    from foldfab.folding.work import Work
+
     found: dict[float, FoldSolution] = {}
     put_off: dict[float, int] = {}
     refused: list[FoldingError] = []
@@ -110,6 +114,7 @@ def _fitted(
     """The solution with plates as they are; `work`, `most` and `worth` as in `foldfab.folding.solve`."""
     from foldfab.fabrication.room import share_of_bed
     from foldfab.folding.solve import solve
+    from foldfab.folding.work import Work
 
     posture = settled_posture(recipe)
     if recipe.print.scale is not None:

@@ -25,7 +25,7 @@ UNITS_PER_COST = 1e8
 """Costs are rounded to integers of this resolution."""
 POSING = 4e-3
 """Charge for handing a program to the engine, s; its deterministic time does not count that."""
-READING = 5e-6
+READING = 7e-6
 """Charge for each literal of a conflict that it reads, s."""
 
 Order = tuple[str, str]

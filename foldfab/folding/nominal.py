@@ -29,7 +29,7 @@ class Nominal:
     """How the bases of a unit come down, by section."""
 
     down: Mapping[str, Array]
-    """By base, (sections, FRAMES) translation along Z, mm."""
+    """By base, (sections, FRAMES) translation along Z, mm; without the frames to snap where no base comes down."""
 
     @property
     def sections(self) -> int:
@@ -45,10 +45,17 @@ def nominal(problem: Problem, unit: Unit) -> Nominal:
     way = press.ways(unit.bases, least, heights, levels(problem, unit))
     marks = sorted({round(w, 6) for w in way.values()} | {0.0}, reverse=True)
     if not clear or len(marks) == 1:
-        return Nominal({b: np.zeros((1, FRAMES)) for b in unit.bases})
+        return Nominal({b: np.zeros((1, FRAMES - CLIMB)) for b in unit.bases})
     turn = np.append(np.zeros(CLIMB), 1 - np.cos(np.linspace(0.0, np.pi / 2, FRAMES - CLIMB)))
     level = np.array([a + (b - a) * turn for a, b in itertools.pairwise(marks)])
     return Nominal({b: np.minimum(level, way[b]) - way[b] for b in unit.bases})
+
+
+def evenly(sections: int, frames: int) -> Array:
+    """Progress (sections, frames) of a chain that folds evenly, and waits where others snap."""
+    moving = FRAMES - CLIMB
+    found = np.linspace(0.0, 1.0, sections * moving).reshape(sections, moving)
+    return np.concatenate([np.repeat(found[:, :1], frames - moving, axis=1), found], axis=1)
 
 
 def snapped(progress: Array) -> Array:

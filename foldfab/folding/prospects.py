@@ -100,9 +100,9 @@ def _look_at(
 
 
 def _held_against(
-    problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane]
+    problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane], passed: Bools | None = None
 ) -> tuple[Room, dict[int, set[int]]]:
-    """Which pieces of the lanes meet what is around them, and which of its boxes."""
+    """Which pieces of the lanes meet what is around them, and which of its boxes; those `passed` (boxes,) left out."""
     steps = problem.options.shrink_steps
     room: Room = {x.number: np.zeros(steps, dtype=bool) for x in many}
     met: dict[int, set[int]] = {x.number: set() for x in many}
@@ -116,7 +116,7 @@ def _held_against(
             if a is None:
                 continue
             b = _carried(own, around, group[0], section)
-            pieces, lanes, boxes = blocked(a, cuts, b, lambda: _own_plates(problem, own.lanes, around))
+            pieces, lanes, boxes = blocked(a, cuts, b, lambda: _never_met(problem, own, around, passed))
             for number, box in zip(lanes.tolist(), boxes.tolist(), strict=True):
                 met[number].add(box)
             for x in group:
@@ -159,6 +159,11 @@ def _close(problem: Problem, around: Surroundings, many: list[Lane]) -> list[Lan
     return [x for x, is_close in zip(many, near.any(1).tolist(), strict=True) if is_close]
 
 
+def _never_met(problem: Problem, own: Repertoire, around: Surroundings, passed: Bools | None) -> Bools:
+    plates = _own_plates(problem, own.lanes, around)
+    return plates if passed is None else plates | passed
+
+
 def _own_plates(problem: Problem, many: list[Lane], around: Surroundings) -> Bools:
     """(lanes, boxes) the plates that a lane's own hinges stand on; they are never in its way."""
     number = problem.tree.number
@@ -186,8 +191,24 @@ def _raised(
             _look_at(problem, own, around, [current], room, met)
         if not room[current.number].any():
             break
-    helps = current is not first and room[current.number].sum() < room[first.number].sum()
-    return (current,) if helps else ()
+    if current is first or room[current.number].sum() >= room[first.number].sum():
+        return ()
+    _keep_clear(problem, own, around, [(current, first)], room, met)
+    return (current,) if room[current.number].sum() < room[first.number].sum() else ()
+
+
+def _keep_clear(
+    problem: Problem, own: Repertoire, around: Surroundings, raised: list[tuple[Lane, Lane]], room: Room,
+    met: dict[int, set[int]],
+) -> None:  # fmt: skip
+    """Rules out what lanes on plinths would meet without them and stands open: thickness only adds constraints
+    (section 5.6), and plinths are for what lies folded.
+    """
+    lies = np.array([s.state != "open" for s in around.solids])[around.owner]
+    standing, by = _held_against(problem, own, around, [plain for _, plain in raised], lies)
+    for x, plain in raised:
+        room[x.number], met[x.number] = room[x.number] | standing[plain.number], met[x.number] | by[plain.number]
+        around.met[x.number] = room[x.number], met[x.number]
 
 
 def _raise_partners(
@@ -202,6 +223,9 @@ def _raise_partners(
         fresh = [x for x in found if x is not None and sum(x.variant.pads) <= PAD_SHARE * problem.sites[patch].clear]
         if fresh:
             _look_at(problem, own, around, fresh, room, met)
+            plain = {x.variant: x for x in many}
+            pairs = ((x, plain.get(replace(x.variant, pads=(0.0, 0.0)))) for x in fresh)
+            _keep_clear(problem, own, around, [(x, y) for x, y in pairs if y is not None], room, met)
             lanes[patch] = (*many, *fresh)
 
 

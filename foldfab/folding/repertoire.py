@@ -17,7 +17,7 @@ from foldfab.folding import anatomy, basic
 from foldfab.folding.basic import Variant
 from foldfab.folding.mechanism import ends, peak, reach
 from foldfab.folding.model import Chain
-from foldfab.folding.nominal import FRAMES, Nominal, nominal, snapped
+from foldfab.folding.nominal import FRAMES, Nominal, evenly, nominal, snapped
 from foldfab.folding.outline import leaves_outline
 from foldfab.folding.press import follow_down, play_limit
 from foldfab.folding.problem import Problem, extent, variants
@@ -241,10 +241,10 @@ def _movers(problem: Problem, own: Repertoire, chain: Chain) -> tuple[dict[int, 
     """By section in which it folds, panels, knuckles and feet (FRAMES, n); and how it drags its far base."""
     down = own.nominal.down[chain.anchor]
     if chain.far is None:
-        progress = np.linspace(0.0, 1.0, down.size).reshape(down.shape)
+        progress = evenly(*down.shape)
         far = None
     elif chain.mechanism == "slanted":
-        progress = np.linspace(0.0, 1.0, down.size).reshape(down.shape)
+        progress = evenly(*down.shape)
         end = reach(chain, progress[0])
         far = (end - end[0]) @ chain.plane
     else:

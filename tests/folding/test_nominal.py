@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from foldfab.folding.nominal import CLIMB, FRAMES, nominal, snapped
+from foldfab.folding.nominal import CLIMB, FRAMES, evenly, nominal, snapped
 from foldfab.folding.problem import Problem, clear_height
 from foldfab.recipe.model import Part
 
@@ -57,6 +57,16 @@ def test_the_snap_comes_before_the_section_in_which_a_chain_starts() -> None:
     found = snapped(past)
     assert found[1, 0] == 0.0 and (np.diff(found[1, : CLIMB + 1]) > 0).all()
     assert (found[1, CLIMB:] == past[1, CLIMB:]).all() and (found[[0, 2]] == past[[0, 2]]).all()
+
+
+@pytest.mark.parametrize("waits", [True, False])
+def test_what_folds_evenly_waits_for_snaps(waits: bool) -> None:
+    frames = FRAMES if waits else FRAMES - CLIMB
+    found = evenly(2, frames)
+    assert found.shape == (2, frames) and found[0, 0] == 0.0 and found[-1, -1] == 1.0
+    moving = found[:, frames - (FRAMES - CLIMB) :]
+    assert np.diff(moving.ravel()) == pytest.approx(1 / (moving.size - 1))
+    assert (found[:, : frames - (FRAMES - CLIMB)] == moving[:, :1]).all()
 
 
 @pytest.mark.parametrize("name", ["h_scaffold", "passage", "shelf", "box_with_table", "tower", "chair"])

@@ -181,6 +181,22 @@ def test_nothing_is_raised_over_what_stands_open(problem: Make, beside_a_flap: t
     assert not any(any(x.variant.pads) for many in room.lanes.values() for x in many)
 
 
+@pytest.mark.parametrize(("height", "is_raised"), [(102, True), (106, False)])
+def test_plinths_do_not_draw_a_chain_back_from_what_stands_open(
+    problem: Make, board_at: Callable[..., Part], wall_at: Callable[..., Part], box: Callable[..., Part],
+    height: float, is_raised: bool,
+) -> None:  # fmt: skip
+    """On a plinth over the folded flap the higher wall would only just swing past the other, by what it takes."""
+    walls = (wall_at("a", -50, 0, height, 20, -20), wall_at("b", 50, 0, height))
+    made = problem((board_at("ground", 0, 240), *walls, box("flap", (0, -30, 17), (60, 4, 30))))
+    options = found(made, after_folding(made, "flap"), "a")
+    towards = [x for x in pick(options.lanes["a"], "slanted", "+") if any(x.variant.pads)]
+    assert bool(towards) == is_raised
+    assert not is_raised or not options.blocked[towards[0].number].any()
+    (plain,) = (x for x in pick(options.lanes["a"], "slanted", "+") if not any(x.variant.pads))
+    assert options.blocked[plain.number].all() and ("b" in options.obstacles[plain.number]) != is_raised
+
+
 def test_nothing_is_raised_where_there_is_room(problem: Make, beside_a_flap: tuple[Part, ...]) -> None:
     made = problem(beside_a_flap, slanting=False)
     room = found(made, after_folding(made, "flap"), "b")

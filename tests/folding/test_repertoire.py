@@ -115,7 +115,8 @@ def test_a_lane_starts_as_high_as_it_stood_open_and_ends_flat(problem: Make, nam
                     assert start.center[frame, :count] == pytest.approx(expected.center[0], abs=1e-6)
             panels = end.axes[-1, : len(x.chain.lengths)]
             assert np.abs(panels[:, 0, 2]) == pytest.approx(np.ones(len(panels)), abs=1e-6)
-            assert len(start.center) == FRAMES
+            # Where no base comes down, nothing waits for snaps.
+            assert len(start.center) == (FRAMES if len(unit.bases) > 1 else FRAMES - CLIMB)
 
 
 def test_a_slanted_lane_drags_its_base_along_an_arc_and_the_others_do_not(problem: Make) -> None:

@@ -1,7 +1,7 @@
 """What the patches of a unit can do: every variant of every patch, swept along the unit's nominal fold (section 5.3).
 
 A variant with its sweep is a *lane*. Lanes are made once for a unit, whatever stands around it, and so is the conflict
-graph between them; lanes with more hinges are added when nothing cheaper will do, and lanes on plinths when the
+graph between them; lanes with more hinges are added when they may be cheaper in all, and lanes on plinths when the
 surroundings ask for them.
 """
 

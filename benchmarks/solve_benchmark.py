@@ -8,7 +8,8 @@ result   folded; deleted: folded with patches taken away (`gone`); refused; cras
 units    folding units (section 5.2); patches: foldable patches, those taken away included; hinges: inserted ones
 cost     eq. 1; bound: no solution is cheaper; gap: what one could save at most, or `proven`
 valid    by `foldfab.verify`: ok or the number of violations, with thickness / without
-ms       process time of one cold solve, imports not counted; with --repeat the median of several
+ms       process time of one cold solve, imports and abstraction not counted; with --repeat the median of several
+abstract process time of the abstraction of the same, ms
 
 With --reference, a table with the columns model, axis, result, units, foldable_patches, hinges, cost, ms, the other's
 result stands beside each row. ABOVE: units and patches agree, and our cost is higher; MISSED: it folds and we do not.
@@ -26,9 +27,10 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from measuring import Column, Table, forget, ready, recipe_files, timed, told
+from measuring import Column, Table, clocked, forget, ready, recipe_files, timed, told
 
 import foldfab
+import foldfab.fitting
 from foldfab.folding.model import FoldSolution
 from foldfab.folding.units import decompose
 from foldfab.pipeline import compose
@@ -55,6 +57,7 @@ class Row:
     ordering: str
     result: str
     ms: float | None = None
+    abstraction_ms: float | None = None
     deleted: int | None = None
     units: int | None = None
     foldable_patches: int | None = None
@@ -140,26 +143,28 @@ def solved(
     recipe, _ = timed(lambda: foldfab.load(str(file), direction=axis, ordering=ordering, **options))
     if isinstance(recipe, Exception):
         return Row(file.stem, axis, ordering, "unreadable", reason=told(recipe))
-    solution, ms = cold_solves(recipe, repeat)
+    solution, *times = cold_solves(recipe, repeat)
     if isinstance(solution, Exception):
         result = "refused" if isinstance(solution, foldfab.FoldfabError) else "crashed"
-        return Row(file.stem, axis, ordering, result, ms, reason=told(solution))
+        return Row(file.stem, axis, ordering, result, *times, reason=told(solution))
     deleted = sum(m.is_deleted for m in solution.modifications)
     return Row(
-        file.stem, axis, ordering, "deleted" if deleted else "folded", ms, deleted,
+        file.stem, axis, ordering, "deleted" if deleted else "folded", *times, deleted,
         len(decompose(solution.scaffold)), len(solution.modifications), sum(m.hinges for m in solution.modifications),
         float(solution.cost), float(solution.lower_bound), *(validity(solution) if verify else ()),
     )  # fmt: skip
 
 
-def cold_solves(recipe: Recipe, repeat: int) -> tuple[FoldSolution | Exception, float]:
-    """What a solve returns or raises, and the median of its process times, ms."""
-    times = []
+def cold_solves(recipe: Recipe, repeat: int) -> tuple[FoldSolution | Exception, float, float]:
+    """What a solve returns or raises, and the medians of its process times without abstraction and in that, ms."""
+    times, beside = [], []
     for _ in range(max(repeat, 1)):
         forget()
-        solution, ms = timed(lambda: foldfab.foldabilize(recipe))
-        times.append(ms)
-    return solution, statistics.median(times)
+        with clocked(foldfab.fitting, "abstracted") as clock:
+            solution, ms = timed(lambda: foldfab.foldabilize(recipe))
+        times.append(ms - clock.ms)
+        beside.append(clock.ms)
+    return solution, statistics.median(times), statistics.median(beside)
 
 
 def validity(solution: FoldSolution) -> tuple[str, str]:
@@ -177,7 +182,7 @@ def table_for(files: list[Path], *, has_reference: bool) -> Table:
         Column("recipe", max((len(file.stem) for file in files), default=6)), Column("axis", 4),
         Column("ordering", 8), Column("result", 10), Column("gone", 4), Column("units", 5), Column("patches", 7),
         Column("hinges", 6), Column("cost", 7, ".4f"), Column("bound", 7, ".4f"), Column("gap", 6),
-        Column("valid", 7), Column("ms", 7, ".0f"),
+        Column("valid", 7), Column("ms", 7, ".1f"), Column("abstract", 8, ".1f"),
     ]  # fmt: skip
     return Table((*columns, Column("reference", 29)) if has_reference else tuple(columns))
 
@@ -185,7 +190,7 @@ def table_for(files: list[Path], *, has_reference: bool) -> Table:
 def show(table: Table, row: Row, other: Other | None, before: Row | None) -> None:
     values = [
         row.model, row.axis, row.ordering, row.result, row.deleted or None, row.units, row.foldable_patches,
-        row.hinges, row.cost, row.lower_bound, row.gap, row.valid, row.ms,
+        row.hinges, row.cost, row.lower_bound, row.gap, row.valid, row.ms, row.abstraction_ms,
     ]  # fmt: skip
     notes = [verdict(row, other), compared(row, before), row.reason]
     table.row(*values, beside(other), note="  ".join(note for note in notes if note))
@@ -238,7 +243,7 @@ def sums(rows: list[Row], orderings: tuple[str, ...], reference: Mapping[tuple[s
         times = [row.ms for row in own if row.ms is not None]
         if times:
             worst = max((row for row in own if row.ms is not None), key=lambda row: row.ms)
-            print(f"  median {statistics.median(times):.0f} ms, in all {sum(times) / 1000:.1f} s, ", end="")
+            print(f"  median {statistics.median(times):.1f} ms, in all {sum(times) / 1000:.1f} s, ", end="")
             print(f"worst {worst.ms:.0f} ms ({worst.model} {worst.axis})")
         folded = [row for row in own if row.folds]
         invalid = [row for row in folded if row.valid not in (None, "ok/ok")]

@@ -98,7 +98,7 @@ def _copied_lane(problem: Problem, x: Lane, offset: Array, base: dict[str | None
     return replace(
         x, patch=patch, chain=chain, cuts=x.cuts + float(offset @ c.along), beside=beside,
         is_out=leaves_outline(problem, chain, beside), low=x.low + offset, high=x.high + offset,
-        reach=(x.reach[0] + offset, x.reach[1] + offset),
+        reach=(x.reach[0] + offset, x.reach[1] + offset) if x.reach is not None else None,
     )  # fmt: skip
 
 

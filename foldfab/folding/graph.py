@@ -105,8 +105,8 @@ class Graph:
         is_free &= not any(all(picked[g] in many for g, many in combination) for combination in self.forbidden)
         return picked if is_free else None
 
-    def promising(self, prices: Mapping[str, float]) -> list[str]:
-        """The patches with lanes not made yet that could be part of a choice cheaper than all known ones.
+    def promising(self, prices: Mapping[str, float], known: float) -> list[str]:
+        """The patches with lanes not made yet that could be part of a choice cheaper than the one known.
 
         A promise, a lane at its patch's price of `prices` that conflicts with nothing, takes the place of the patch's
         deletion: where the cheapest choice takes no promise, no lane that is not made yet can better it.
@@ -119,8 +119,12 @@ class Graph:
         forbidden = frozenset(c for c in self.forbidden if not any(last.get(g) in many for g, many in c))
         gaps: list[float] = []
         picked = cheapest(costs, tables, forbidden, gaps, work=self.work)
-        if picked is None or gaps:
+        if picked is None:
+            return []
+        if gaps:
             return [self.patches[g] for g in last]
+        if sum(float(cost[i]) for cost, i in zip(costs, picked, strict=True)) >= known:
+            return []
         return [self.patches[g] for g, end in last.items() if picked[g] == end]
 
     def _undragged(self, group: int) -> Array:

@@ -107,7 +107,7 @@ def _held_against(
     room: Room = {x.number: np.zeros(steps, dtype=bool) for x in many}
     met: dict[int, set[int]] = {x.number: set() for x in many}
     close = _close(problem, around, many)
-    if not close:
+    if not close or not len(around.boxes):
         return room, met
     cuts = cuts_of(own)
     for group in _alike(own, close):
@@ -149,11 +149,15 @@ def _carried(own: Repertoire, around: Surroundings, lead: Lane, section: int) ->
 
 
 def _close(problem: Problem, around: Surroundings, many: list[Lane]) -> list[Lane]:
-    """The lanes that come near anything but the plates that their own hinges stand on; all others have room."""
-    if not many:
-        return []
+    """The lanes that come near anything but the plates that their own hinges stand on; all others have room.
+
+    Where a unit has very many bases, all of its lanes.
+    """
+    reach = [x.reach for x in many if x.reach is not None]
+    if len(reach) < len(many) or not many:
+        return many
     near = ~_own_plates(problem, many, around)
-    low, high = (np.array([x.reach[end] for x in many])[:, around.group] for end in (0, 1))
+    low, high = (np.array([corners[end] for corners in reach])[:, around.group] for end in (0, 1))
     for axis in range(3):
         near &= (low[..., axis] <= around.corners[1][:, axis]) & (high[..., axis] >= around.corners[0][:, axis])
     return [x for x, is_close in zip(many, near.any(1).tolist(), strict=True) if is_close]

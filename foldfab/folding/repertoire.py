@@ -1,7 +1,7 @@
 """What the patches of a unit can do: every variant of every patch, swept along the unit's nominal fold (section 5.3).
 
 A variant with its sweep is a *lane*. Lanes are made once for a unit, whatever stands around it, and so is the conflict
-graph between them; lanes with more hinges are added when nothing cheaper will do, and lanes on plinths when the
+graph between them; lanes with more hinges are added when they may be cheaper in all, and lanes on plinths when the
 surroundings ask for them.
 """
 
@@ -33,6 +33,8 @@ ROOM_THICKNESSES = 2.0
 
 TOUCH = 1e-3
 """Parts exactly the gap apart do not meet: the grid that sizes stand on, mm."""
+FEW_BASES = 8
+"""Up to this many bases of a unit it is kept for each lane how it is seen from each of them."""
 TALL = 1e6
 """Half the height of a folding region, mm: what lies above or below it counts."""
 _AWKWARD_DIGITS = 4
@@ -69,8 +71,9 @@ class Lane:
     """(3,) lower corner of all that it sweeps and of its far base when folded."""
     high: Array
     """(3,) upper corner."""
-    reach: tuple[Array, Array]
-    """Lower and upper corners (b, 3) of all that it sweeps and half the gap around it, as seen from each base."""
+    reach: tuple[Array, Array] | None
+    """Lower and upper corners (b, 3) of all that it sweeps and half the gap around it, as seen from each base of the
+    unit; None where that has more than a few."""
 
     def comes_past(self, depth: float) -> bool:
         """Whether its far base, coming straight down, passes `depth` mm below its start, or above if negative."""
@@ -263,13 +266,9 @@ def far_shift(own: Repertoire, lead: Lane, base: str, section: int) -> Array:
 
     A thick stack stops its far base before the nominal fold would.
     """
-    return _far_shift(own, lead.chain, lead.drag, base, section)
-
-
-def _far_shift(own: Repertoire, chain: Chain, drag: Array | None, base: str, section: int) -> Array:
-    if base != chain.far:
+    if base != lead.chain.far:
         return upright(own.nominal.down[base][section])
-    return drag if drag is not None else upright(_stopped(own.nominal, chain, section))
+    return lead.drag if lead.drag is not None else upright(_stopped(own.nominal, lead.chain, section))
 
 
 def stops_early(own: Repertoire, x: Lane) -> bool:
@@ -294,12 +293,18 @@ def upright(height: Array) -> Array:
 
 def _seen_from_bases(
     problem: Problem, own: Repertoire, chain: Chain, drag: Array | None, corners: Mapping[int, tuple[Array, Array]]
-) -> tuple[Array, Array]:
+) -> tuple[Array, Array] | None:
+    bases = own.unit.bases
+    if len(bases) > FEW_BASES:
+        return None
     # Where a tilted box gets wider by half the gap, its bounds do so by up to a diagonal of it.
     margin = math.sqrt(3.0) * problem.thickness.gap / 2
     lows, highs = [], []
     for section, (low, high) in corners.items():
-        shift = np.array([_far_shift(own, chain, drag, base, section) for base in own.unit.bases])
+        shift = np.zeros((len(bases), FRAMES, 3))
+        shift[..., 2] = [own.nominal.down[base][section] for base in bases]
+        if chain.far is not None:
+            shift[bases.index(chain.far)] = drag if drag is not None else upright(_stopped(own.nominal, chain, section))
         lows.append((low.min(1) - shift).min(1))
         highs.append((high.max(1) - shift).max(1))
     return np.array(lows).min(0) - margin, np.array(highs).max(0) + margin
@@ -308,10 +313,20 @@ def _seen_from_bases(
 def _reach(problem: Problem, own: Repertoire) -> dict[str, tuple[Array, Array]]:
     thickest = max(problem.sites[p].panel for p in own.unit.patches)
     margin = ROOM_THICKNESSES * (thickest + problem.thickness.gap)
-    bases = own.unit.bases
-    low = np.array([x.reach[0] for x in own.lanes]).reshape(-1, len(bases), 3).min(axis=0, initial=np.inf) - margin
-    high = np.array([x.reach[1] for x in own.lanes]).reshape(-1, len(bases), 3).max(axis=0, initial=-np.inf) + margin
-    return dict(zip(bases, zip(low, high, strict=True), strict=True))
+    found = {b: (np.full(3, np.inf), np.full(3, -np.inf)) for b in own.unit.bases}
+    for section in range(own.nominal.sections):
+        straight = [x for x in own.lanes if x.drag is None]
+        for group in (straight, *([x] for x in own.lanes if x.drag is not None)):
+            many = swept(problem, own, group, section)
+            if many is None:
+                continue
+            far, drag = group[0].chain.far, group[0].drag
+            least, most = many.low.min(1), many.high.max(1)
+            for base in own.unit.bases:
+                shift = drag if base == far and drag is not None else upright(own.nominal.down[base][section])
+                low, high = (least - shift).min(0) - margin, (most - shift).max(0) + margin
+                found[base] = (np.minimum(found[base][0], low), np.maximum(found[base][1], high))
+    return found
 
 
 def _with_far_base(problem: Problem, chain: Chain, low: Array, high: Array) -> tuple[Array, Array]:

@@ -223,13 +223,14 @@ def _wanted(problem: Problem, own: Repertoire, graph: Graph, picked: tuple[int, 
     """The patches with lanes not made yet that could better a choice; all such where there is no choice."""
     if picked is None:
         return [p for p in own.unit.patches if own.later[p]]
-    if graph.weight(picked) <= problem.least.get(own.unit, -np.inf):
+    weight = graph.weight(picked)
+    if weight <= problem.least.get(own.unit, -np.inf):
         return []
     least = {p: _price(problem, p, many[0].variant) if many else np.inf for p, many in own.plain.items()}
-    spare = graph.weight(picked) - sum(price for price in least.values() if np.isfinite(price))
+    spare = weight - sum(price for price in least.values() if np.isfinite(price))
     prices = {p: _price(problem, p, later[0]) for p, later in own.later.items() if later}
     affordable = {p: price for p, price in prices.items() if price - least[p] < spare}
-    return graph.promising(affordable) if affordable else []
+    return graph.promising(affordable, weight) if affordable else []
 
 
 def _price(problem: Problem, patch: str, variant: Variant) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from foldfab.folding.basic import windows
-from foldfab.folding.conflict import compare, drag_alike, neighbours, snap_alike, table, windows_table
+from foldfab.folding.conflict import compare, drag_alike, meet_across, neighbours, snap_alike, table, windows_table
 from foldfab.folding.problem import Problem
 from foldfab.folding.repertoire import TOUCH, Lane, Repertoire, upright
 from foldfab.geometry.arrays import Bools
@@ -89,6 +89,12 @@ def assert_as_by_brute_force(made: Problem, own: Repertoire) -> int:
             assert (a.number, b.number) not in own.pieces
             continue
         expected = by_brute_force(made, own, a, b)
+        if not drag_alike(a, b):
+            # Those never go together; that they meet is a reason, and no conflict.
+            assert (a.number, b.number) not in own.pieces
+            assert meet_across(made, own, [a], [b]) == ({(a.number, b.number)} if expected.any() else set())
+            continue
+        assert not meet_across(made, own, [a], [b])
         found = own.pieces.get((a.number, b.number), np.zeros((STEPS, STEPS), dtype=bool))
         assert found.tolist() == expected.tolist(), f"{a.patch} {a.variant} and {b.patch} {b.variant}"
         count += bool(expected.any())

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from foldfab.folding.basic import Variant, chain
-from foldfab.folding.mechanism import frames, joints, peak, reach, tilts
+from foldfab.folding.mechanism import descent, ends, frames, joints, open_height, peak, reach, start, tilts
 from foldfab.folding.model import Chain, Mechanism, Side, Thickness
 from foldfab.folding.site import sites
 from foldfab.geometry.arrays import Array
@@ -155,3 +155,18 @@ def test_panels_are_rigid_and_hang_together_at_any_time(
         normal, _, up = axes[0, i]
         assert origins[0, i] + off[i] * normal == pytest.approx(place[i], abs=EXACT)
         assert origins[0, i] + off[i + 1] * normal + length[i] * up == pytest.approx(place[i + 1], abs=EXACT)
+
+
+@pytest.mark.parametrize(("lean", "hinges", "side"), CASES)
+def test_what_is_looked_up_for_a_mirror_image_is_the_chains_own(
+    folding: Folding, lean: float, hinges: int, side: Side
+) -> None:
+    made = folding(lean, hinges, side)
+    progress, height, top = descent(made)
+    own = reach(made, progress)
+    assert (height == own[:, 1] - own[0, 1]).all() and top == int(np.argmax(height))
+    first, last = reach(made, np.array([0.0, 1.0]))
+    assert start(made) == pytest.approx(first @ made.plane, abs=EXACT)
+    assert ends(made) == pytest.approx((last - first) @ made.plane, abs=EXACT)
+    assert open_height(made) == first[1]
+    assert made.to_the_right.turn > 0 and (made.to_the_right == made.shape) == (side == "r")

@@ -88,6 +88,23 @@ def test_the_pieces_that_meet_something_are_blocked_and_the_others_are_not(
     assert {np.sign(x.chain.turn * x.chain.across[0]) for x in hit if x.variant.hinges == 1} == {1.0}
 
 
+@pytest.mark.parametrize("name", ["chair", "box_with_table", "three_walls", "tower"])
+def test_lanes_that_come_near_nothing_have_room(problem: Make, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As they are found to have where every lane is held against everything."""
+    rooms = []
+    for few in (8, 0):
+        monkeypatch.setattr("foldfab.folding.repertoire.FEW_BASES", few)
+        made = problem(name)
+        scene = open_scene(made)
+        found = []
+        for unit in made.units:
+            own = whole(made, unit)
+            seen = prospects(made, own, look(made, scene, own), in_place=False)
+            found.append({n: (room.tolist(), sorted(seen.met[n])) for n, room in seen.blocked.items()})
+        rooms.append(found)
+    assert rooms[0] == rooms[1]
+
+
 def brute_force(made: Problem, own: Repertoire, around: Surroundings, x: Lane) -> list[bool]:
     """Whether each piece of a lane meets anything but its own plates, by the exact test, frame by frame."""
     blocked = [False] * (len(x.cuts) - 1)

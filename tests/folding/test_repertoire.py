@@ -203,6 +203,9 @@ def test_all_that_is_swept_is_in_reach_as_seen_from_every_base(problem: Make, na
                 low, high = bounds(boxes)
                 for base in unit.bases:
                     shift = far_shift(own, x, base, section)[:, None]
+                    assert x.reach is not None
+                    own_least, own_most = (corners[unit.bases.index(base)] for corners in x.reach)
+                    assert (low - shift >= own_least).all() and (high - shift <= own_most).all()
                     least, most = own.reach[base]
                     # Lanes that were not needed at first may take up some of the room for plinths.
                     spare = margin - 1.0 if x.number in first else K / 2
@@ -231,3 +234,8 @@ def test_what_would_leave_the_outline_is_known(problem: Make) -> None:
     own = only(problem("deep_box"))
     assert all(x.is_out for x in lanes_of(own, "back", "in-place", 1))
     assert not any(x.is_out for x in lanes_of(own, "back", "in-place", 3))
+
+
+def test_units_of_many_bases_keep_no_reach_for_each(problem: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("foldfab.folding.repertoire.FEW_BASES", 1)
+    assert all(x.reach is None for x in only(problem("h_scaffold")).lanes)

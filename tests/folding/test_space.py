@@ -23,8 +23,9 @@ CUTS = np.tile(np.linspace(-WIDE, WIDE, STEPS + 1), (2 * LANES, 1))
 SHORT = 1e-6
 """Pieces end this much before their cuts."""
 seeds = st.integers(0, 2**32 - 1)
-directions = st.sampled_from([(1, 1), (0, 1), (1, -1)])
-"""The axis of a second hinge direction, and its sign, beside a first one along +y: askew, alike, opposite."""
+directions = st.sampled_from([(1, 1, 0.0), (0, 1, 0.0), (0, -1, 0.0), (1, -1, 0.0), (1, 1, 1.0)])
+"""The axis of a second hinge direction, its sign, and by which angle (radians) it is turned, beside a first one along
++y: alike, square, opposite, and at another angle."""
 steady = settings(deadline=None, derandomize=True, max_examples=60)
 
 
@@ -38,7 +39,9 @@ def about(axis: int, sign: int, angles: Array) -> Array:
     return rows
 
 
-def panels(seed: int, axis: int = 1, sign: int = 1, *, first: int = 0, per_lane: int = 2) -> Batch:
+def panels(
+    seed: int, axis: int = 1, sign: int = 1, angle: float = 0.0, *, first: int = 0, per_lane: int = 2
+) -> Batch:  # fmt: skip
     """Two lanes of panels that turn about axes along one direction; some are narrower, as knuckles are."""
     rng = np.random.default_rng(seed)
     count = LANES * per_lane
@@ -48,7 +51,8 @@ def panels(seed: int, axis: int = 1, sign: int = 1, *, first: int = 0, per_lane:
     # Panels keep to their place along their hinges.
     center[..., axis] = np.where(half[:, 1] < WIDE, rng.uniform(-1.5, 1.5, count), 0.0)
     axes = about(axis, sign, rng.uniform(-2, 2, (FRAMES, count)))
-    boxes = Boxes(center, axes, np.broadcast_to(half, (FRAMES, count, 3)))
+    turn = np.array([[np.cos(angle), np.sin(angle), 0.0], [-np.sin(angle), np.cos(angle), 0.0], [0.0, 0.0, 1.0]])
+    boxes = Boxes(center @ turn, axes @ turn, np.broadcast_to(half, (FRAMES, count, 3)))
     return batch(boxes, first + np.repeat(np.arange(LANES), per_lane))
 
 
@@ -74,7 +78,7 @@ def not_at_all(shape: tuple[int, int]) -> Bools:
 @given(seeds, directions, st.sampled_from([3, 20_000]))
 @steady
 def test_pieces_of_lanes_conflict_exactly_where_the_exact_test_says(
-    seed: int, direction: tuple[int, int], chunk: int
+    seed: int, direction: tuple[int, int, float], chunk: int
 ) -> None:
     """However few boxes are looked at in one go."""
     a, b = panels(seed), panels(seed + 1, *direction, first=LANES)
@@ -91,7 +95,7 @@ def test_pieces_of_lanes_conflict_exactly_where_the_exact_test_says(
 
 @given(seeds, directions)
 @steady
-def test_pieces_of_lanes_are_blocked_exactly_where_they_meet_an_obstacle(seed: int, direction: tuple[int, int]) -> None:
+def test_pieces_of_lanes_are_blocked_exactly_where_they_meet_an_obstacle(seed: int, direction: tuple[int, int, float]) -> None:
     a, b = panels(seed), panels(seed + 1, *direction)
     expected, met = np.zeros((LANES, STEPS), dtype=bool), set[tuple[int, int]]()
     for _, lane, k, p in pieces(a, CUTS):
@@ -107,7 +111,7 @@ def test_pieces_of_lanes_are_blocked_exactly_where_they_meet_an_obstacle(seed: i
 @given(seeds, directions, st.integers(1, 40))
 @steady
 def test_meetings_are_all_overlaps_however_few_are_looked_at_at_once(
-    seed: int, direction: tuple[int, int], chunk: int
+    seed: int, direction: tuple[int, int, float], chunk: int
 ) -> None:
     a, b = panels(seed), panels(seed + 1, *direction)
     expected = {

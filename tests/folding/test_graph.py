@@ -1,0 +1,73 @@
+"""The conflict graph of a unit, and the lanes that are promised in it before they are made."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from foldfab.folding.congruent import repertoire
+from foldfab.folding.graph import Graph
+from foldfab.folding.ordering import floors
+from foldfab.folding.problem import Problem
+from foldfab.folding.prospects import unhindered
+from foldfab.folding.realise import Clash
+
+from .every import whole
+
+Make = Callable[..., Problem]
+
+
+def graph_of(made: Problem) -> Graph:
+    (unit,) = made.units
+    own = repertoire(made, unit)
+    return Graph(made, own, unhindered(made, own), np.zeros(3))
+
+
+@pytest.mark.parametrize("name", ["three_walls", "chair", "corner", "two_ways", "deep_box", "table", "beside"])
+@pytest.mark.parametrize("slanting", [True, False])
+def test_promises_find_the_same_choice_as_all_lanes(problem: Make, name: str, slanting: bool) -> None:
+    made, full = problem(name, slanting=slanting), problem(name, slanting=slanting)
+    for unit in full.units:
+        whole(full, unit)
+    few, all_of_them = floors(made), floors(full)
+    assert {n: c.weight for n, c in few.items()} == pytest.approx({n: c.weight for n, c in all_of_them.items()})
+
+
+@pytest.mark.parametrize("name", ["three_walls", "chair", "corner", "two_ways"])
+def test_lanes_that_could_better_nothing_are_not_made(problem: Make, name: str) -> None:
+    """One hinge is enough here, and with three one part alone would cost what all of them cost together."""
+    made = problem(name)
+    floors(made)
+    (unit,) = made.units
+    own = repertoire(made, unit)
+    assert {x.variant.hinges for x in own.lanes} == {0, 1} and all(own.later[p] for p in unit.patches)
+
+
+def test_a_promise_is_taken_where_it_is_cheaper_than_what_is_known(problem: Make) -> None:
+    graph = graph_of(problem("corner", slanting=False))
+    assert graph.promising({"back": 10.0, "side": 10.0}, np.inf) == []
+    assert graph.promising({"back": 0.0, "side": 10.0}, np.inf) == ["back"]
+    assert graph.promising({"back": 0.0, "side": 0.0}, np.inf) == ["back", "side"]
+    assert graph.promising({"back": 0.1, "side": 0.1}, 0.2) == []
+
+
+@pytest.mark.parametrize("patches", [("back",), ("back", "side")])
+def test_a_promise_takes_over_no_conflicts_of_the_deletion_whose_place_it_takes(
+    problem: Make, patches: tuple[str, ...]
+) -> None:
+    graph = graph_of(problem("corner", slanting=False))
+    gone = tuple(len(o.price) - 1 for o in graph.options)
+    graph.learn(gone, Clash((patches,), "the furniture would fall apart", cuts=True))
+    assert graph.promising({"back": 0.0, "side": 0.0}, np.inf) == ["back", "side"]
+
+
+def test_beside_a_promise_nothing_is_dragged_along(problem: Make) -> None:
+    """Slanted walls cost nothing, but what is promised comes straight down, and then all do."""
+    made = problem("box_with_table")
+    own = repertoire(made, made.unit_of["left"])
+    graph = Graph(made, own, unhindered(made, own), np.zeros(3))
+    assert {x.variant.mechanism for x in own.lanes} == {"slanted"}
+    assert graph.promising({"left": 0.0}, 10.0) == []
+    assert graph.promising({"left": 0.0, "right": 0.0}, 10.0) == ["left", "right"]

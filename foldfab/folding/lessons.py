@@ -48,10 +48,15 @@ def lessons_of_others(
     group: Group, scene: Scene, unit: Unit, around: Surroundings, options: Mapping[str, Options],
     proposal: Proposal, done: set[str], found: Prospects,
 ) -> list[Lesson]:  # fmt: skip
-    """What the same surroundings would do to the lanes that were not chosen."""
+    """What the same surroundings would do to the lanes that were not chosen.
+
+    Where the unit's own bases are depends on all that is chosen in it: what meets them has to be played.
+    """
     problem, lessons = group.problem, []
     for x in (x for many in found.lanes.values() for x in many if found.blocked[x.number].any() and not x.is_out):
         met = found.obstacles[x.number]
+        if not set(met).isdisjoint(unit.bases):
+            continue
         strangers = [o for o in met if o in problem.unit_of and o in options]
         windows = {w for w in options[x.patch].windows if found.blocked[x.number][w[0] : w[1]].any()}
         held: list[tuple[str, frozenset[Place]]] = [(x.patch, frozenset((x.number, w) for w in windows))]

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import replace
 from itertools import pairwise
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -89,3 +91,18 @@ def test_nor_does_any_thickness_or_clearance(
 ) -> None:  # fmt: skip
     with suppress(FoldfabError):
         assert_folds(solution(stack(gaps, walls), thickness=thickness, clearance=clearance))
+
+
+@given(gaps, st.lists(walls, min_size=1, max_size=4))
+@steady
+def test_no_bound_is_above_what_the_mirrored_furniture_costs(
+    solution: Make, stack: Stack, gaps: list[int], walls: list[Wall]
+) -> None:
+    parts = stack(gaps, walls)
+    mirror = np.array([-1.0, 1.0, 1.0])
+    with suppress(FoldfabError):
+        one = solution(parts)
+        other = solution(
+            tuple(replace(p, center=p.center * mirror, axes=p.axes * mirror * [[-1], [1], [1]]) for p in parts)
+        )
+        assert max(one.lower_bound, other.lower_bound) <= min(one.cost, other.cost) + 1e-6

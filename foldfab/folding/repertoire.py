@@ -301,7 +301,7 @@ def _seen_from_bases(
     margin = math.sqrt(3.0) * problem.thickness.gap / 2
     lows, highs = [], []
     for section, (low, high) in corners.items():
-        shift = np.zeros((len(bases), FRAMES, 3))
+        shift = np.zeros((len(bases), len(low), 3))
         shift[..., 2] = [own.nominal.down[base][section] for base in bases]
         if chain.far is not None:
             shift[bases.index(chain.far)] = drag if drag is not None else upright(_stopped(own.nominal, chain, section))

@@ -95,7 +95,9 @@ def test_pieces_of_lanes_conflict_exactly_where_the_exact_test_says(
 
 @given(seeds, directions)
 @steady
-def test_pieces_of_lanes_are_blocked_exactly_where_they_meet_an_obstacle(seed: int, direction: tuple[int, int, float]) -> None:
+def test_pieces_of_lanes_are_blocked_exactly_where_they_meet_an_obstacle(
+    seed: int, direction: tuple[int, int, float]
+) -> None:
     a, b = panels(seed), panels(seed + 1, *direction)
     expected, met = np.zeros((LANES, STEPS), dtype=bool), set[tuple[int, int]]()
     for _, lane, k, p in pieces(a, CUTS):

@@ -83,9 +83,10 @@ def _split(
 
 def _met_by(problem: Problem, own: Repertoire, many: list[Lane], lanes: Mapping[str, Lane | None]) -> set[str]:
     """The patches whose lanes meet any of some lanes of another patch, whether or not they could go together."""
-    others = [x for p, x in lanes.items() if x is not None and all(p != y.patch for y in many)]
+    own_patches = {x.patch for x in many}
     met = {q for x in many for q in _conflicting(own, x, lanes, range(len(x.cuts) - 1))}
-    rest = [x for x in others if x.patch not in met]
+    known = own_patches | met
+    rest = [x for p, x in lanes.items() if x is not None and p not in known]
     return met | {own.lanes[b].patch for _, b in meet_across(problem, own, many, rest)}
 
 

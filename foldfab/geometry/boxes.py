@@ -118,7 +118,9 @@ def near_pairs(a: tuple[Array, Array], b: tuple[Array, Array]) -> tuple[Indices,
         if not halves:
             i, j = np.nonzero(_meeting(part_a, part_b))
             found.append(some_a[i] * len(b[0]) + some_b[j])
-    i, j = np.divmod(np.unique(np.concatenate(found)), len(b[0]))
+    # Sorted, and not by np.unique, which hashes millions of numbers for more than twice the time.
+    codes = np.sort(np.concatenate(found))
+    i, j = np.divmod(codes[np.diff(codes, prepend=-1) > 0], len(b[0]))
     return i, j
 
 

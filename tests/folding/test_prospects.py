@@ -204,8 +204,8 @@ def test_plinths_do_not_draw_a_chain_back_from_what_stands_open(
     height: float, is_raised: bool,
 ) -> None:  # fmt: skip
     """On a plinth over the folded flap the higher wall would only just swing past the other, by what it takes."""
-    walls = (wall_at("a", -50, 0, height, 20, -20), wall_at("b", 50, 0, height))
-    made = problem((board_at("ground", 0, 240), *walls, box("flap", (0, -30, 17), (60, 4, 30))))
+    walls = (wall_at("a", -50, 0, height, 20, 20), wall_at("b", 50, 0, height))
+    made = problem((board_at("ground", 0, 240), *walls, box("flap", (0, 30, 17), (60, 4, 30))))
     options = found(made, after_folding(made, "flap"), "a")
     towards = [x for x in pick(options.lanes["a"], "slanted", "+") if any(x.variant.pads)]
     assert bool(towards) == is_raised

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +16,12 @@ from foldfab.fabrication.inspect import printed_extent
 from foldfab.fabrication.lying import lying, to_support
 from foldfab.fabrication.model import Assembly
 from foldfab.fabrication.posture import bed_turn, edge_problem, needs_pins, printed_pose
+from foldfab.slicing.profile import LAYER_MM, SUPPORT_DEG
+
+LEAST_SUPPORTED = 0.1
+"""PrusaSlicer supports islands of about this area, mm²."""
+ROUNDING = 0.02
+"""mm."""
 
 
 @pytest.fixture(scope="module")
@@ -49,6 +56,28 @@ def test_on_edge_nothing_hangs_over_but_on_the_bed(standing: Assembly) -> None:
         return total
 
     assert hanging(standing) < 0.02 * hanging(build(standing.solution, "folded"))
+
+
+def test_no_corner_of_a_heel_is_left_below_a_ramp_where_a_panel_leans(assembled: Callable[..., Assembly]) -> None:
+    made = assembled("tent", "edge")
+    assert any("heel" in joint.stops for joint in made.joints)
+    assert starting(made) < LEAST_SUPPORTED
+
+
+def starting(made: Assembly) -> float:
+    """The largest area, mm², that a layer of a body adds beyond what a slope of 40° carries, on edge."""
+    stand = np.eye(4)
+    stand[:3, :3] = bed_turn(made.up)
+    worst = 0.0
+    for body in made.bodies:
+        solid = solids.from_mesh(body.vertices, body.faces)
+        solid = solids.moved(solid, stand @ printed_pose(made, body.name))
+        low, high = (float(corner[2]) for corner in solids.bounds(solid))
+        layers = [solids.section(solid, float(z)) for z in np.arange(low + LAYER_MM / 2, high, LAYER_MM)]
+        carried = [solids.grown(layer, LAYER_MM / np.tan(np.radians(SUPPORT_DEG))) for layer in layers]
+        fresh = [solids.grown(o - under, -ROUNDING) for under, o in zip(carried[:-1], layers[1:], strict=True)]
+        worst = max([worst, *(layer.area() for layer in fresh)])
+    return worst
 
 
 def test_axes_that_are_not_parallel_are_named() -> None:

@@ -39,6 +39,11 @@ RECIPES: dict[str, tuple[Part, ...]] = {
         Part("roof", np.array([0, 0, 84]), np.array([160, 80, 4]), np.eye(3)),
         Part("wall", np.array([0, 0, 42]), np.array([4, 60, 80]), np.eye(3)),
     ),
+    "stilts": (
+        Part("top", np.array([0, 0, 70]), np.array([200, 70, 4]), np.eye(3)),
+        Part("leg-left", np.array([-90, 0, 34]), np.array([4, 14.3, 68]), np.eye(3)),
+        Part("leg-right", np.array([90, 0, 34]), np.array([4, 64, 68]), np.eye(3)),
+    ),
     "table": (
         Part("top", np.array([0, 0, 70]), np.array([200, 70, 4]), np.eye(3)),
         Part("leg-left", np.array([-90, 0, 34]), np.array([4, 60, 68]), np.eye(3)),

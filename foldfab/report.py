@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from foldfab.fabrication.model import AS_READ, Assembly
+from foldfab.fabrication.model import AS_READ, LEVEL, Assembly
 from foldfab.folding.model import FoldSolution, Modification
 from foldfab.geometry.arrays import Array
 from foldfab.postures import Row as PostureRow
@@ -282,10 +282,21 @@ def _after(assembly: Assembly) -> list[str]:
         return ["give supports where the slicer wants them", *seams, pins, f"fold in this order: {order}"]
     if assembly.posture == "edge":
         props = [f"break the props off {', '.join(b.name for b in assembly.propped)}"] if assembly.propped else []
-        return ["it stands on edge: allow no supports", *props, f"unfold it; fold in this order: {order}"]
+        return [f"it stands on edge: {_supports(assembly)}", *props, f"unfold it; fold in this order: {order}"]
     if assembly.posture == "folded":
         return ["it lies flat on the bed; unfold it in the reverse of this order", f"fold in this order: {order}"]
     return ["give supports from the bed only, and loosen every hinge gently once", f"fold in this order: {order}"]
+
+
+def _supports(assembly: Assembly) -> str:
+    """Where the slicer has to help on edge."""
+    from foldfab.fabrication.inspect import listing
+    from foldfab.fabrication.posture import hanging
+
+    air = hanging(assembly)
+    level = any(finding.code == LEVEL for finding in assembly.findings)
+    where = [f"below {listing(air)}"] * bool(air) + ["below knuckles with flat undersides"] * level
+    return f"give supports {' and '.join(where)}, and nowhere else" if where else "allow no supports"
 
 
 def _findings(assembly: Assembly) -> str:

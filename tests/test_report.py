@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from foldfab import report
-from foldfab.fabrication.model import Assembly, Body, Finding, Joint
+from foldfab.fabrication.model import LEVEL, Assembly, Body, Finding, Joint
 from foldfab.folding.model import FoldSolution, Modification, Step, Thickness
 from foldfab.recipe.read import parse
 from foldfab.scaffold.model import BasePatch, Outline, Patch, Scaffold
@@ -102,6 +102,17 @@ def test_summary_says_what_a_maker_wants_to_know() -> None:
 
 def test_summary_of_a_folded_print() -> None:
     assert "unfold it" in report.summary(assembly("folded"), Path("x"))
+
+
+def test_summary_says_where_a_print_on_edge_wants_support() -> None:
+    made = replace(assembly("edge"), up=np.array([0.0, 1.0, 0.0]))
+    assert "it stands on edge: allow no supports" in report.summary(made, Path("x"))
+    low, high = made.bodies[1], made.bodies[0]
+    lifted = replace(made, bodies=(replace(high, vertices=high.vertices + [0.0, 9.0, 0.0]), low))
+    assert "on edge: give supports below high, and nowhere else" in report.summary(lifted, Path("x"))
+    assert "on edge: allow no supports" in report.summary(replace(lifted, propped=(lifted.bodies[0],)), Path("x"))
+    level = replace(lifted, findings=(Finding(LEVEL, "the undersides of hinge-1 stay flat"),))
+    assert "below high and below knuckles with flat undersides" in report.summary(level, Path("x"))
 
 
 def test_table_is_in_folding_order() -> None:

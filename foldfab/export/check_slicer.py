@@ -13,11 +13,13 @@ from foldfab.errors import SlicingError
 from foldfab.export.apart import Clash, Hinge, Outlines, outlines
 from foldfab.export.check_solids import bodies_of
 from foldfab.export.mesh_files import stl_bytes
-from foldfab.export.placed import placement
+from foldfab.export.placed import is_within, placement
 from foldfab.export.read_files import PrintFile, read_stl, read_threemf
+from foldfab.export.read_glb import pose, read_glb
 from foldfab.export.report import Row, listed
 from foldfab.export.shell import Shell
 from foldfab.export.stated import Stated, StatedJoint, inside
+from foldfab.geometry.arrays import Array
 from foldfab.recipe.model import Printer
 from foldfab.slicing.gcode import layers
 from foldfab.slicing.model import SliceReport
@@ -117,17 +119,29 @@ def _told_clashes(seen: Outlines) -> list[str]:
 
 def _hinges(folder: Path, one: PrintFile, stated: Stated) -> tuple[list[Hinge], list[str]]:
     """The hinges that this file prints in place, as they lie, and parts that are not as their STL is."""
-    ranges = {name: one.faces[first : last + 1] for name, first, last in one.volumes}
-    stls = {part.name: part.stl for part in stated.parts}
-    wanted = sorted({name for joint in stated.joints for name in joint.parts if set(joint.parts) <= set(ranges)})
-    motions = {n: placement(read_stl(inside(folder, stls[n])), (one.vertices, ranges[n])) for n in wanted}
-    astray = [name for name, motion in motions.items() if motion is None]
-    found = {name: motion for name, motion in motions.items() if motion is not None}
+    meshes = {name: (one.vertices, one.faces[first : last + 1]) for name, first, last in one.volumes}
+    stls = {part.name: inside(folder, part.stl) for part in stated.parts}
+    wanted = sorted({name for joint in stated.joints for name in joint.parts if set(joint.parts) <= set(meshes)})
+    parts = {name: read_stl(stls[name]) for name in wanted}
+    found = {n: m for n in wanted if n not in stated.propped and (m := placement(parts[n], meshes[n])) is not None}
+    propped = [name for name in wanted if name in stated.propped]
+    if propped and found:
+        carried = _carried(folder, stated, found, propped)
+        found |= {name: motion for name, motion in carried.items() if is_within(parts[name], meshes[name], motion)}
     placed = [_placed(joint, found) for joint in stated.joints if set(joint.parts) <= set(found)]
-    return [hinge for hinge in placed if hinge is not None], astray
+    return [hinge for hinge in placed if hinge is not None], [name for name in wanted if name not in found]
 
 
-def _placed(joint: StatedJoint, motions: dict[str, np.ndarray]) -> Hinge | None:
+def _carried(folder: Path, stated: Stated, found: dict[str, Array], propped: list[str]) -> dict[str, Array]:
+    """Where parts with props lie, whose meshes are not those of their STL: folded, as the others are."""
+    fold = read_glb(inside(folder, f"{stated.name}.glb"))
+    folded = {name: pose(fold, name, 1.0) @ np.linalg.inv(pose(fold, name, 0.0)) for name in (*found, *propped)}
+    first = min(found)
+    stand: Array = found[first] @ np.linalg.inv(folded[first])
+    return {name: stand @ folded[name] for name in propped}
+
+
+def _placed(joint: StatedJoint, motions: dict[str, Array]) -> Hinge | None:
     first, second = (joint.axis @ motions[name][:3, :3].T + motions[name][:3, 3] for name in joint.parts)
     is_in_place = bool(np.linalg.norm(first - second, axis=1).max() <= SAME_AXIS_MM)
     return Hinge(joint.name, joint.parts, (first + second) / 2, joint.radius) if is_in_place else None

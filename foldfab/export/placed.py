@@ -6,10 +6,13 @@ from collections import Counter
 
 import numpy as np
 
+from foldfab.export.solid import solid
 from foldfab.geometry.arrays import Array, Indices
 
 OFF_MM = 2e-3
 """How far a corner may land from where the print file has it: both files are rounded to 0.01 µm and 32 bits."""
+OUTSIDE_MM3 = 0.1
+"""How much of a part may seem to stick out of what it is printed in: faces that lie on each other, rounded twice."""
 LENGTH_DIGITS = 3
 """Triangles are told apart by the lengths of their sides to that many digits, where some are missing on one side."""
 
@@ -27,6 +30,13 @@ def placement(part: tuple[Array, Indices], printed: tuple[Array, Indices]) -> Ar
     motion = _fitted(a.reshape(-1, 3), b.reshape(-1, 3))
     off = np.abs(a.reshape(-1, 3) @ motion[:3, :3].T + motion[:3, 3] - b.reshape(-1, 3)).max()
     return motion if off <= OFF_MM else None
+
+
+def is_within(part: tuple[Array, Indices], printed: tuple[Array, Indices], motion: Array) -> bool:
+    """Whether a mesh, moved, lies within a body of the print: a part that is printed with a prop."""
+    vertices, faces = part
+    inner = solid("part", vertices @ motion[:3, :3].T + motion[:3, 3], faces).manifold
+    return bool((inner - solid("body", *printed).manifold).volume() <= OUTSIDE_MM3)
 
 
 def _common(a: Array, b: Array) -> tuple[Array, Array]:

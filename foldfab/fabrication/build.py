@@ -12,9 +12,9 @@ from foldfab.errors import FabricationError
 from foldfab.fabrication import solids
 from foldfab.fabrication.bodies import bodies
 from foldfab.fabrication.bores import blocked, bored
-from foldfab.fabrication.inspect import inspect
+from foldfab.fabrication.inspect import inspect, listing
 from foldfab.fabrication.joinery import cut_to_bed, with_breaks
-from foldfab.fabrication.model import AS_READ, Assembly, Finding, Joint
+from foldfab.fabrication.model import AS_READ, LEVEL, Assembly, Finding, Joint
 from foldfab.fabrication.own import own_shapes
 from foldfab.fabrication.panels import panels
 from foldfab.fabrication.plates import axis_of, plate
@@ -63,7 +63,8 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
     joints_ = tuple(_joints(solution))
     draft = Assembly(solution, (), joints_, times, {n: poses[n] for n in made}, posture, (), described, up)
     tell("stops", 0.0)
-    ramps = relief(solution, made, up) if up is not None else {}
+    ramps, level = relief(solution, made, joints_, up) if up is not None else ({}, [])
+    findings += _level(level)
     held = stopped(draft, made, ramps)
     held, told = own_shapes(draft, held, ramps)
     made, draft = held.made, replace(draft, joints=held.joints, shapes=held.shapes)
@@ -147,6 +148,13 @@ def _planed(taken: dict[str, float]) -> list[Finding]:
         f"{', '.join(sorted(taken))} lose up to {max(taken.values()):.2f} mm at one end, so that more stands on the bed"
     )
     return [Finding("planed", told)]
+
+
+def _level(hinges: list[str]) -> list[Finding]:
+    if not hinges:
+        return []
+    why = "because ramps below knuckles so short would open their sockets; print larger"
+    return [Finding(LEVEL, f"the undersides of {listing(hinges)} stay flat on edge and want support, {why}")]
 
 
 def _joints(solution: FoldSolution) -> list[Joint]:

@@ -202,13 +202,17 @@ def _axes(assembly: Assembly) -> list[Finding]:
 
 
 def _captive(assembly: Assembly, made: dict[str, Solid]) -> list[Finding]:
-    """No hinge can be pulled apart; hinges of the same kind, radius and width are tried once."""
+    """No hinge can be pulled apart; hinges of the same kind, radius and width are tried once, but on edge.
+
+    There, hinges that mirror each other have their ramps at different ends.
+    """
     gap = assembly.solution.thickness.gap
-    tried: set[tuple[bool, float, float]] = set()
+    tried: set[tuple[str, bool, float, float]] = set()
     findings = []
     for joint in assembly.joints:
         along = joint.axis[1] - joint.axis[0]
-        kind = (joint.is_inserted, round(joint.radius, 3), round(float(np.linalg.norm(along)), 2))
+        name = joint.name if assembly.up is not None else ""
+        kind = (name, joint.is_inserted, round(joint.radius, 3), round(float(np.linalg.norm(along)), 2))
         if kind in tried:
             continue
         tried.add(kind)
@@ -247,16 +251,17 @@ def _latches(assembly: Assembly) -> list[Finding]:
     if not assembly.solution.scaffold.recipe.print.latch:
         return []
     free = [joint.name for joint in assembly.joints if not joint.is_inserted and joint.latch is None]
-    told = _told(free)
+    told = listing(free)
     return [Finding("latch", f"no room for a latch at {told}; wider or thicker parts have it")] if free else []
 
 
-def _told(names: list[str]) -> str:
+def listing(names: list[str]) -> str:
+    """The first few names, and how many more there are."""
     return ", ".join(names[:MOST_NAMES]) + (f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else "")
 
 
 def _unstopped(end: str, angle: float | None, names: list[str]) -> Finding:
-    told = _told(names)
+    told = listing(names)
     how_far = "as far as one likes" if angle is None else f"{angle:g}°"
     text = f"no room for a stop within {PAST:g}°: {told} can be turned {how_far} past {end}"
     return Finding("stop", text if angle is None else f"{text}; thicker plates or less clearance would make it less")

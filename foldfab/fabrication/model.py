@@ -103,6 +103,8 @@ class Finding:
 
 AS_READ = "as-read"
 """The code of findings that the recipe brings with it."""
+LEVEL = "level"
+"""The code of a finding about knuckles that have no ramps on edge."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

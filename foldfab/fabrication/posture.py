@@ -21,6 +21,8 @@ PARALLEL = 1e-6
 """Sines of angles between hinge axes below this are rounding."""
 ON_BED = 0.01
 """A body this close to the bed stands on it, mm."""
+HANGS = 0.5
+"""A body higher than this over the bed wants something below it, mm."""
 
 
 def needs_pins(posture: Posture) -> bool:
@@ -86,6 +88,16 @@ def printed_turn(assembly: Assembly) -> Array:
         turn: Array = assembly.solution.scaffold.rotation.T
         return turn
     return bed_turn(assembly.up)
+
+
+def hanging(assembly: Assembly) -> list[str]:
+    """The bodies that begin in the air as they are printed, and have no prop; by name."""
+    turn, low = printed_turn(assembly), dict[str, float]()
+    for body in assembly.bodies:
+        pose = printed_pose(assembly, body.name)
+        low[body.name] = float(((body.vertices @ pose[:3, :3].T + pose[:3, 3]) @ turn[2]).min())
+    held = {body.name for body in assembly.propped}
+    return [name for name, at in low.items() if name not in held and at - min(low.values()) > HANGS]
 
 
 def _in_the_air(made: dict[str, Solid], poses: dict[str, Array], up: Array) -> tuple[int, float]:

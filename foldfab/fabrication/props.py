@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from foldfab.fabrication import shapes, solids
-from foldfab.fabrication.posture import ON_BED, bed_turn
+from foldfab.fabrication.posture import HANGS, ON_BED, bed_turn
 from foldfab.fabrication.shapes import Shape
 from foldfab.fabrication.solids import Outline, Solid
 from foldfab.geometry.arrays import Array
@@ -21,13 +21,11 @@ AIR = 0.25
 NECK, SPACING, BITE = 0.8, 5.0, 0.15
 """Width of a neck, how far apart necks stand, and how far they reach into part and prop, mm."""
 TALL = 8.0
-"""A part higher than this over the bed gets no prop: slicers build better towers, mm."""
+"""A part higher than this over the bed gets no prop: slicers build better towers, mm; the lowest need none."""
 ASIDE = 1.25
 """How far a prop keeps away from other parts, in clearances: what is tidied may move a little."""
 FAR = 1000.0
 """Beyond every print, mm."""
-LEAST = 0.5
-"""A part lower than this over the bed gets none either: it is not worth the breaking, mm."""
 
 
 def planed(
@@ -60,7 +58,7 @@ def propped(made: dict[str, Solid], poses: dict[str, Array], up: Array, gap: flo
     low = {name: float(solids.bounds(body)[0][2]) for name, body in placed.items()}
     found = {}
     for name in sorted(made):
-        if not LEAST < low[name] <= TALL:
+        if not HANGS < low[name] <= TALL:
             continue
         reach = low[name] + gap
         others = [body for other, body in sorted(placed.items()) if other != name and low[other] < reach]

@@ -3,18 +3,24 @@
 There, each knuckle above a gap is a shelf that sticks out of its plate or panel. Its lower face is cut to a steep ramp
 that starts where the shelf is rooted; a cone below it widens upward until it meets the ramp. Material is only
 taken away, so that every gap and every clearance of the fold stays. What the ramps leave of a socket no longer encloses
-the cone in it, but each cone that points down still stands in a whole socket, so that hinges hold.
+the cone in it, but each cone that points down still stands in a whole socket, so that hinges hold. Where knuckles are so
+short that a ramp would open that socket too, the carrier's undersides stay flat, and want support.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from foldfab.fabrication import solids
 from foldfab.fabrication.hinges import Knuckles, knuckles
+from foldfab.fabrication.inspect import is_captive
+from foldfab.fabrication.model import Joint
 from foldfab.fabrication.plates import axis_of
+from foldfab.fabrication.printed import printed
 from foldfab.fabrication.shapes import Shape, cone, cut, placed, union, wrap
 from foldfab.fabrication.solids import Solid
 from foldfab.folding.mechanism import frames
@@ -53,26 +59,46 @@ class _Shelf:
     """x of the face of its own panel beside which an inserted hinge stands, mm; 0 for a hinge in mid-plane."""
 
 
-def relief(solution: FoldSolution, made: dict[str, Solid], up: Array) -> dict[str, list[Shape]]:
+def relief(
+    solution: FoldSolution, made: dict[str, Solid], joints: Iterable[Joint], up: Array
+) -> tuple[dict[str, list[Shape]], list[str]]:
     """By body, what is cut from it, open, to have ramps under all knuckles; `up` (3,) is a hinge direction.
 
-    Hinges of other kinds than the cone stay as they are.
+    And the hinges that keep flat undersides. Hinges of other kinds than the cone stay as they are.
     """
     cutters: dict[str, list[Shape]] = {name: [] for name in made}
+    level: list[str] = []
     if solution.thickness.hinge != "cone":
-        return cutters
+        return cutters, level
+    named = {joint.name: joint for joint in joints}
     for chain in solution.chains:
-        thickness = solution.thickness.of(chain.panel)
-        for name, shelf, origin, axes in _shelves(chain, thickness, up):
-            way = 1.0 if float(axes[1] @ up) > 0 else -1.0
-            low = float((solids.mesh(made[name])[0] @ up).min() - origin @ up) * way
-            faces = [f for f in shelf.faces if (f[0] - low) * way > STANDS]
-            cutters[name] += [placed(_cutter(shelf, face, way), origin, axes) for face in faces]
-    return cutters
+        shelves = _shelves(chain, solution.thickness.of(chain.panel), up)
+        for pair, halves in zip(pairwise(chain.bodies), zip(shelves[::2], shelves[1::2], strict=True), strict=True):
+            joint = named["~".join(pair)]
+            ramps = [(name, _ramps(made[name], *rest, up)) for name, *rest in halves]
+            kept = next((some for some in (ramps, ramps[1:]) if _holds(joint, made, some, solution.thickness.gap)), [])
+            level += [joint.name] if kept != ramps else []
+            for name, some in kept:
+                cutters[name] += some
+    return cutters, level
+
+
+def _ramps(body: Solid, shelf: _Shelf, origin: Array, axes: Array, up: Array) -> list[Shape]:
+    way = 1.0 if float(axes[1] @ up) > 0 else -1.0
+    low = float((solids.mesh(body)[0] @ up).min() - origin @ up) * way
+    faces = [f for f in shelf.faces if (f[0] - low) * way > STANDS]
+    return [placed(_cutter(shelf, face, way), origin, axes) for face in faces]
+
+
+def _holds(joint: Joint, made: dict[str, Solid], ramps: list[tuple[str, list[Shape]]], gap: float) -> bool:
+    """Whether a hinge cannot be pulled apart once these are cut from its halves."""
+    below = dict(ramps)
+    halves = [solids.cut(made[name], [printed(ramp) for ramp in below.get(name, [])]) for name in joint.parts]
+    return is_captive(halves[0], halves[1], joint.axis, joint.radius, gap)
 
 
 def _shelves(chain: Chain, thickness: Thickness, up: Array) -> list[tuple[str, _Shelf, Array, Array]]:
-    """By body, its shelves with the frame (origin, rows) that each stands in."""
+    """By body, its shelves with the frame (origin, rows) that each stands in: two a hinge, the carrier's first."""
     origins, axes = frames(chain, np.zeros(1))
     last, half = len(chain.lengths) - 1, thickness.panel / 2
     across = (-half - CLEAR, half + CLEAR)
@@ -94,8 +120,8 @@ def _shelves(chain: Chain, thickness: Thickness, up: Array) -> list[tuple[str, _
             width, room, surface = across, thickness.foot_room, 0.0
             found.append(_foot(chain, thickness, j, up))
         faces = _ceilings(marks, chain.span, thickness, way)
-        # As far as a heel may reach, so that none of it is left standing below a ramp.
-        far = room + thickness.axis_height
+        # As far as the corner of a heel may reach, where its panel leans when it is open: none is left below a ramp.
+        far = room + float(np.hypot(half, thickness.axis_height))
         shelf = _Shelf(width, (x, z), z - away * room, away, far, faces, thickness.pin_radius, surface)
         found.append((chain.panels[i], shelf, origins[0, i], axes[0, i]))
     return found

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,8 @@ from foldfab.export.check_slicer import told
 from foldfab.export.report import Row
 from foldfab.export.shell import Shell
 from foldfab.export.threemf import threemf_bytes
+from foldfab.export.write import write
+from foldfab.fabrication import solids
 from foldfab.fabrication.model import Assembly
 from foldfab.pipeline import check
 
@@ -87,6 +90,26 @@ def test_a_body_that_is_not_its_stl_is_found(written: Path, assembly: Assembly, 
 
     rewrite(written, assembly, stretched)
     assert "not the STL's bodies moved rigidly: flap" in rows(written, prusa)["apart"].text
+
+
+@pytest.fixture(scope="module")
+def propped(make: Callable[..., Assembly]) -> Assembly:
+    """Printed folded, with a block at the flap that is to be broken off."""
+    made = make(posture="folded")
+    flap = next(body for body in made.bodies if body.name == "flap")
+    (x0, y0, _), (x1, y1, high) = flap.vertices.min(axis=0), flap.vertices.max(axis=0)
+    block = solids.box(((x0 + x1) / 2 - 1, y0 + 5, high - 0.5), ((x0 + x1) / 2 + 1, y1 - 5, high + 4))
+    vertices, faces = solids.mesh(solids.union([solids.from_mesh(flap.vertices, flap.faces), block]))
+    with_block = replace(flap, vertices=vertices, faces=faces, hinge_faces=np.zeros(0, np.int64))
+    return replace(made, propped=(with_block,))
+
+
+def test_a_part_with_a_prop_is_found_where_its_hinges_take_it(propped: Assembly, tmp_path: Path, prusa: str) -> None:
+    write(propped, tmp_path / "stool")
+    row = rows(tmp_path / "stool", prusa)["apart"]
+    assert row.ok and row.facts["hinges"] == 4, row.text
+    rewrite(tmp_path / "stool", propped, lambda shell: moved(shell, "flap", (0.05, 0, 0)))
+    assert "not the STL's bodies moved rigidly: flap" in rows(tmp_path / "stool", prusa)["apart"].text
 
 
 def test_a_slicer_that_makes_nothing_fails_the_check(written: Path, tmp_path: Path) -> None:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from foldfab.export.placed import placement
+from foldfab.export.placed import is_within, placement
 from foldfab.geometry.arrays import Array, Indices
 
 
@@ -37,3 +37,13 @@ def test_another_shape_or_a_mirrored_one_is_no_copy() -> None:
     assert placement(wedge(), moved(wedge(), mirrored)) is None
     assert placement(wedge(), (wedge()[0] * 1.01, wedge()[1])) is None
     assert placement(wedge(), (wedge()[0] * 1.01, wedge()[1][1:])) is None
+
+
+def test_a_part_is_within_what_is_printed_of_it_only_where_it_lies() -> None:
+    vertices, faces = moved(wedge(), motion(0.3))
+    middle = vertices.mean(axis=0)
+    larger = ((vertices - middle) * 1.2 + middle, faces)
+    assert is_within(wedge(), (vertices, faces), motion(0.3))
+    assert is_within(wedge(), larger, motion(0.3))
+    assert not is_within(wedge(), larger, motion(0.5))
+    assert not is_within((wedge()[0] * 1.05, wedge()[1]), (vertices, faces), motion(0.3))

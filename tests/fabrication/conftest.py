@@ -22,11 +22,27 @@ from foldfab.scaffold.abstract import abstract
 from foldfab.scaffold.model import BasePatch, Outline
 
 BIG = Printer("big", (500.0, 500.0, 500.0))
+LEAN = np.radians(30.0)
 RECIPES: dict[str, tuple[Part, ...]] = {
+    "tent": (
+        Part("ground", np.array([0, 0, 0]), np.array([160, 60, 4]), np.eye(3)),
+        Part("roof", np.array([0, 0, 84]), np.array([160, 60, 4]), np.eye(3)),
+        Part(
+            "wall",
+            np.array([0, 0, 42]),
+            np.array([4, 60, 80 / np.cos(LEAN)]),
+            np.array([[np.cos(LEAN), 0, -np.sin(LEAN)], [0, 1, 0], [np.sin(LEAN), 0, np.cos(LEAN)]]),
+        ),
+    ),
     "shelter": (
         Part("ground", np.array([0, 0, 0]), np.array([160, 80, 4]), np.eye(3)),
         Part("roof", np.array([0, 0, 84]), np.array([160, 80, 4]), np.eye(3)),
         Part("wall", np.array([0, 0, 42]), np.array([4, 60, 80]), np.eye(3)),
+    ),
+    "stilts": (
+        Part("top", np.array([0, 0, 70]), np.array([200, 70, 4]), np.eye(3)),
+        Part("leg-left", np.array([-90, 0, 34]), np.array([4, 14.3, 68]), np.eye(3)),
+        Part("leg-right", np.array([90, 0, 34]), np.array([4, 64, 68]), np.eye(3)),
     ),
     "table": (
         Part("top", np.array([0, 0, 70]), np.array([200, 70, 4]), np.eye(3)),
@@ -44,7 +60,7 @@ def assert_printable() -> Callable[[Solid | Body], None]:
 
 @pytest.fixture(scope="session")
 def assembled() -> Callable[..., Assembly]:
-    """The assembly of `shelter` (a wall that folds in the middle) or of `table` (legs that fold under it)."""
+    """The assembly of `shelter` (a wall that folds in the middle), `tent` (one that leans) or `table` (legs)."""
     return cache(make_assembly)
 
 

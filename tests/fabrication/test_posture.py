@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -11,10 +12,16 @@ from foldfab import pipeline
 from foldfab.errors import FabricationError, FoldingError
 from foldfab.fabrication import solids
 from foldfab.fabrication.build import build
-from foldfab.fabrication.inspect import printed_extent
+from foldfab.fabrication.inspect import inspect, is_captive, printed_extent
 from foldfab.fabrication.lying import lying, to_support
-from foldfab.fabrication.model import Assembly
-from foldfab.fabrication.posture import bed_turn, edge_problem, needs_pins, printed_pose
+from foldfab.fabrication.model import LEVEL, Assembly
+from foldfab.fabrication.posture import bed_turn, edge_problem, hanging, needs_pins, printed_pose
+from foldfab.slicing.profile import LAYER_MM, SUPPORT_DEG
+
+LEAST_SUPPORTED = 0.1
+"""PrusaSlicer supports islands of about this area, mm²."""
+ROUNDING = 0.02
+"""mm."""
 
 
 @pytest.fixture(scope="module")
@@ -41,14 +48,62 @@ def test_ramps_take_material_away_and_nothing_else(standing: Assembly) -> None:
 def test_on_edge_nothing_hangs_over_but_on_the_bed(standing: Assembly) -> None:
     turn = bed_turn(standing.up)
 
-    def hanging(made: Assembly) -> float:
+    def overhang(made: Assembly) -> float:
         total = 0.0
         for body in made.bodies:
             points = (body.vertices @ printed_pose(standing, body.name)[:3, :3].T) @ turn.T
             total += to_support(points - [0, 0, points[:, 2].min()], body)
         return total
 
-    assert hanging(standing) < 0.02 * hanging(build(standing.solution, "folded"))
+    assert overhang(standing) < 0.02 * overhang(build(standing.solution, "folded"))
+
+
+def test_no_corner_of_a_heel_is_left_below_a_ramp_where_a_panel_leans(assembled: Callable[..., Assembly]) -> None:
+    made = assembled("tent", "edge")
+    assert any("heel" in joint.stops for joint in made.joints)
+    assert starting(made) < LEAST_SUPPORTED
+
+
+def test_ramps_never_make_a_hinge_come_apart(assembled: Callable[..., Assembly]) -> None:
+    made = assembled("stilts", "edge")
+    (told,) = [finding.text for finding in made.findings if finding.code == LEVEL]
+    assert "the undersides of top~leg-left stay flat" in told and "leg-right" not in told
+    bodies = {body.name: solids.from_mesh(body.vertices, body.faces) for body in made.bodies}
+    for joint in made.joints:
+        first, second = (bodies[part] for part in joint.parts)
+        assert is_captive(first, second, joint.axis, joint.radius, made.solution.thickness.gap)
+
+
+def test_hinges_that_mirror_each_other_are_each_pulled_at_on_edge(assembled: Callable[..., Assembly]) -> None:
+    made = assembled("table", "edge")
+    bodies = {body.name: solids.from_mesh(body.vertices, body.faces) for body in made.bodies}
+    # What is left of one leg holds nothing any more; the other leg, of the same width, is whole.
+    bodies["leg-right"] = solids.within(bodies["leg-right"], np.array([-500, -500, -500]), np.array([500, 500, 50]))
+    found = [f for f in inspect(made, bodies, lambda share: None) if f.code == "loose"]
+    assert [f.text.split()[0] for f in found] == ["top~leg-right"]
+
+
+def test_what_begins_in_the_air_is_named(assembled: Callable[..., Assembly]) -> None:
+    made = assembled("stilts", "edge")
+    assert [body.name for body in made.propped] == ["leg-right"]
+    assert hanging(made) == ["leg-left"]
+    assert hanging(assembled("tent", "edge")) == []
+
+
+def starting(made: Assembly) -> float:
+    """The largest area, mm², that a layer of a body adds beyond what a slope of 40° carries, on edge."""
+    stand = np.eye(4)
+    stand[:3, :3] = bed_turn(made.up)
+    worst = 0.0
+    for body in made.bodies:
+        solid = solids.from_mesh(body.vertices, body.faces)
+        solid = solids.moved(solid, stand @ printed_pose(made, body.name))
+        low, high = (float(corner[2]) for corner in solids.bounds(solid))
+        layers = [solids.section(solid, float(z)) for z in np.arange(low + LAYER_MM / 2, high, LAYER_MM)]
+        carried = [solids.grown(layer, LAYER_MM / np.tan(np.radians(SUPPORT_DEG))) for layer in layers]
+        fresh = [solids.grown(o - under, -ROUNDING) for under, o in zip(carried[:-1], layers[1:], strict=True)]
+        worst = max([worst, *(layer.area() for layer in fresh)])
+    return worst
 
 
 def test_axes_that_are_not_parallel_are_named() -> None:

@@ -94,8 +94,8 @@ def _shelves(chain: Chain, thickness: Thickness, up: Array) -> list[tuple[str, _
             width, room, surface = across, thickness.foot_room, 0.0
             found.append(_foot(chain, thickness, j, up))
         faces = _ceilings(marks, chain.span, thickness, way)
-        # As far as a heel may reach, so that none of it is left standing below a ramp.
-        far = room + thickness.axis_height
+        # As far as a heel of a panel that leans may reach, so that none of it is left standing below a ramp.
+        far = room + float(np.hypot(half, thickness.axis_height))
         shelf = _Shelf(width, (x, z), z - away * room, away, far, faces, thickness.pin_radius, surface)
         found.append((chain.panels[i], shelf, origins[0, i], axes[0, i]))
     return found

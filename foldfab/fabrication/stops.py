@@ -198,10 +198,12 @@ def _tongues(mount: _Mount) -> Iterator[tuple[Shape, Shape, Detent | None]]:
 
 def _heels(mount: _Mount) -> Iterator[Shape]:
     half, height = mount.thickness.panel / 2, mount.thickness.axis_height
-    lift = half * float(np.sin(NEAR))
+    # Below a panel that leans over it the heel is shorter, so that it stays within the panel's layer.
+    lever = min(half, (half - height * float(np.sin(-mount.lean))) / float(np.cos(mount.lean)))
+    lift = lever * float(np.sin(NEAR))
     beyond = _leant(box((-FAR, -FAR * 10, -FAR), (-half, FAR * 10, FAR)), mount)
-    for low, high in mount.marks.follower:
-        yield cut(box((-half, low, lift - height), (-half / 2, high, 0.0)), [beyond])
+    for low, high in mount.marks.follower if lever > 0 else ():
+        yield cut(box((-half, low, lift - height), (-lever / 2, high, 0.0)), [beyond])
 
 
 def _laps(chain: Chain, hinge: int, thickness: Thickness, name: str) -> Iterator[Stop]:

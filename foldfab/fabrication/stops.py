@@ -40,6 +40,8 @@ CLOSE = 0.95
 """The gap at a stop as a share of the clearance: what the inspection lets pass, for a shorter lever."""
 AIM = np.radians(2.4)
 """The angle that levers are made for, so that there is material at 3° and not only a touch."""
+LEAST = np.radians(2.75)
+"""The angle that they are made for at least, if there is a place for it."""
 NEAR = np.radians(1.5)
 """The angle at which faces meet that are not printed beside each other."""
 WIDEST, NARROWEST = 8.0, 1.2
@@ -119,7 +121,8 @@ def stops(solution: FoldSolution, chain: Chain, hinge: int, *, in_open: bool) ->
     for added in () if is_tongue else _heels(mount):
         yield Stop(name, "heel", False, panel, placed(added, mount.origin, mount.frame), base)
     for added, slot, holding in _tongues(mount):
-        material, hole = (placed(solid, mount.origin, mount.frame) for solid in (added, slot))
+        material = placed(added, mount.origin, mount.frame)
+        hole = slot and placed(slot, mount.origin, mount.frame)
         latch = holding and holding.at(mount.origin, mount.frame)
         yield Stop(name, "tongue", False, panel, material, base, hole, latch)
 
@@ -175,25 +178,52 @@ def _mount(solution: FoldSolution, chain: Chain, hinge: int) -> _Mount:
     return _Mount(axis_of(chain, 1 if is_far else 0), frame, lean, marks, (low, high), depth, own)
 
 
-def _tongues(mount: _Mount) -> Iterator[tuple[Shape, Shape, Detent | None]]:
+def _tongues(mount: _Mount) -> Iterator[tuple[Shape, Shape | None, Detent | None]]:
+    """Along the panel where its base is thick enough; then leant until they are long enough; then as long as may be."""
+    lever = CLOSE * mount.thickness.gap / np.sin(LEAST)
+    is_long = _room_below(mount, mount.lean) >= lever
+    if is_long:
+        yield from _tongue(mount, mount.lean)
+    back, front = mount.thickness.panel / 20, mount.depth - LIFT
+    reach = float(np.hypot(lever, back))
+    if front < reach:
+        yield from _tongue(mount, float(np.arctan2(back, lever) + np.arccos(front / reach)))
+    yield from _arms(mount, lever)
+    if not is_long:
+        yield from _tongue(mount, mount.lean)
+
+
+def _room_below(mount: _Mount, lean: float) -> float:
+    """How far a tongue that leans so may reach from its axis at its front, mm."""
+    return (mount.depth - LIFT - mount.thickness.panel / 20 * float(np.sin(lean))) / float(np.cos(lean))
+
+
+def _tongue(mount: _Mount, lean: float) -> Iterator[tuple[Shape, Shape, Detent | None]]:
     half, gap = mount.thickness.panel / 2, mount.thickness.gap
     close, front = CLOSE * gap, half / 10
-    most = (mount.depth - LIFT - half * abs(np.sin(mount.lean))) / np.cos(mount.lean)
-    reach = min(close / np.sin(AIM), most)
+    # Along its panel it may be as thick as that; else it is as thin as may be, for it stands out when it is folded.
+    back = half if lean == mount.lean else NARROWEST - front
+    reach = min(close / np.sin(AIM), _room_below(mount, lean))
     sweep = float(np.hypot(half, reach)) + gap
-    is_through = mount.depth - (reach + gap) * np.cos(mount.lean) < SKIN
-    top = sweep * max(0.0, float(np.sin(-mount.lean)))
+    is_through = mount.depth - (reach + gap) * np.cos(lean) < SKIN
+    top = sweep * max(0.0, float(np.sin(-lean)))
+    # Seen along a panel that leans, corners are not equally deep.
+    deep, below = (box((-FAR * 10, -FAR * 10, -FAR * 10), (FAR * 10, FAR * 10, z - mount.depth)) for z in (LIFT, -OPEN))
     # A slot that ends close to an edge of its base is opened there, because the wall beyond it would be too thin.
     for spare, (low, high) in itertools.product((0.0, EDGE), _within(mount.marks.follower, gap)):
-        back = -sweep - spare
         bottom = -(mount.depth + FAR) if is_through else -(reach + gap)
-        slot = _leant(box((back, low - gap, bottom), (front + close, high + gap, top)), mount)
-        if is_through:
-            # Seen along a panel that leans, its corners are not equally deep.
-            slot = cut(slot, [box((-FAR * 10, -FAR * 10, -FAR * 10), (FAR * 10, FAR * 10, -mount.depth - OPEN))])
-        holding = detent(half, front, reach, gap, low, high)
-        holding = holding and holding.at(np.zeros(3), _leaning(mount))
-        yield _leant(box((-half, low, -reach), (front, high, 0.0)), mount), slot, holding
+        slot = _leant(box((-sweep - spare, low - gap, bottom), (front + close, high + gap, top)), lean)
+        slot = cut(slot, [below]) if is_through else slot
+        holding = detent(back, front, reach, gap, low, high)
+        holding = holding and holding.at(np.zeros(3), _leaning(lean))
+        yield cut(_leant(box((-back, low, -reach), (front, high, 0.0)), lean), [deep]), slot, holding
+
+
+def _arms(mount: _Mount, reach: float) -> Iterator[tuple[Shape, None, None]]:
+    """What lies on the base behind the panel, where no slot may be: it stands up when it is folded."""
+    top = CLOSE * mount.thickness.gap - mount.thickness.axis_height
+    for low, high in _within(mount.marks.follower, mount.thickness.gap):
+        yield box((-reach, low, top), (0.0, high, top + NARROWEST)), None, None
 
 
 def _heels(mount: _Mount) -> Iterator[Shape]:
@@ -201,7 +231,7 @@ def _heels(mount: _Mount) -> Iterator[Shape]:
     # Below a panel that leans over it the heel is shorter, so that it stays within the panel's layer.
     lever = min(half, (half - height * float(np.sin(-mount.lean))) / float(np.cos(mount.lean)))
     lift = lever * float(np.sin(NEAR))
-    beyond = _leant(box((-FAR, -FAR * 10, -FAR), (-half, FAR * 10, FAR)), mount)
+    beyond = _leant(box((-FAR, -FAR * 10, -FAR), (-half, FAR * 10, FAR)), mount.lean)
     for low, high in mount.marks.follower if lever > 0 else ():
         yield cut(box((-half, low, lift - height), (-lever / 2, high, 0.0)), [beyond])
 
@@ -260,14 +290,14 @@ def _slab(plane: tuple[Mark, Mark], low: float, high: float) -> Shape:
     return box((x0, low, z0), (x1, high, z1))
 
 
-def _leant(solid: Shape, mount: _Mount) -> Shape:
-    """Turned with the open panel."""
-    return placed(solid, np.zeros(3), _leaning(mount))
+def _leant(solid: Shape, lean: float) -> Shape:
+    """Turned by an angle from upright to where the panel folds."""
+    return placed(solid, np.zeros(3), _leaning(lean))
 
 
-def _leaning(mount: _Mount) -> Array:
-    """(3, 3) rows x, y, z of the open panel in the frame of its mount."""
-    sin, cos = np.sin(mount.lean), np.cos(mount.lean)
+def _leaning(lean: float) -> Array:
+    """(3, 3) rows x, y, z of what leans so, in the frame of its mount."""
+    sin, cos = np.sin(lean), np.cos(lean)
     return np.array([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
 
 

@@ -17,9 +17,10 @@ from foldfab.fabrication import solids
 from foldfab.fabrication.hinges import knuckles
 from foldfab.fabrication.inspect import CLASH, GAP_SHARE, instants
 from foldfab.fabrication.latches import tried
-from foldfab.fabrication.model import Assembly, Latch
+from foldfab.fabrication.model import Assembly, Joint, Latch
 from foldfab.fabrication.passing import Passage, seen_from
 from foldfab.fabrication.plates import ROOT_SHARE, axis_of
+from foldfab.fabrication.pockets import pocket
 from foldfab.fabrication.posture import needs_pins, printed_turn
 from foldfab.fabrication.printed import printed
 from foldfab.fabrication.shapes import Shape, cut, union
@@ -51,10 +52,11 @@ def changed(shape: Shape, changes: Iterable[Change]) -> Shape:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Fitted:
-    """A stop with the two bodies that it changes."""
+    """A stop with the bodies that it changes: its two, and those in which it needs a pocket."""
 
     stop: Stop
     changed: dict[str, Solid]
+    pockets: dict[str, Shape]
 
 
 class Trial:
@@ -98,11 +100,17 @@ class Trial:
         """The bodies with a stop; None where a body would fall apart, or a third one or the bed is in its way."""
         if not self._fits(stop.body, printed(stop.added)) or (stop.cut is not None and self._is_taken(stop)):
             return None
-        others = [name for name in self.made if name not in (stop.body, stop.other)]
-        if not self._is_clear(stop, {name: self.made[name] for name in others}):
+        pockets: dict[str, Shape] = {}
+        for name in self.made:
+            if name not in (stop.body, stop.other) and not self._is_clear(stop, {name: self.made[name]}):
+                hole = self._pocket(stop, name)
+                if hole is None:
+                    return None
+                pockets[name] = hole
+        changed = self._with(stop, pockets)
+        if changed is None or not self._is_clear(stop, {name: changed[name] for name in pockets}):
             return None
-        changed = self._with(stop)
-        return None if changed is None else Fitted(stop, changed)
+        return Fitted(stop, changed, pockets)
 
     def has_room(self, fitted: Fitted) -> bool:
         """Whether a stop stays apart from what it stops against along the whole fold, and leaves no thin wall."""
@@ -110,11 +118,13 @@ class Trial:
         if not self._is_clear(stop, {stop.other: changed[stop.other]}):
             return False
         # What lies between two holes may be too thin to be printed.
-        near = _around([printed(shape) for shape in (stop.added, stop.cut) if shape is not None])
+        mine = _around([printed(shape) for shape in (stop.added, stop.cut) if shape is not None])
+        near = {name: _around([printed(hole)]) for name, hole in fitted.pockets.items()}
         return all(
-            self._thin_sides(name, solid, near) <= self._thin_sides(name, self._plain[name], near)
+            self._thin_sides(name, solid, near.get(name, mine))
+            <= self._thin_sides(name, self._plain[name], near.get(name, mine))
             for name, solid in changed.items()
-        )
+        ) and not any(self._unstopped(name, changed[name]) for name in fitted.pockets)
 
     def soonest(self, late: Sequence[Fitted]) -> Fitted | None:
         """Of stops that work beyond `PAST`, the one that works first and has room; None where none does better."""
@@ -134,6 +144,8 @@ class Trial:
         self._change(stop.body, Change(True, stop.added))
         if stop.cut is not None:
             self._change(stop.other, Change(False, stop.cut))
+        for name, hole in fitted.pockets.items():
+            self._change(name, Change(False, hole))
         for name, solid in fitted.changed.items():
             self._make(name, solid)
 
@@ -175,13 +187,12 @@ class Trial:
 
     def _unstopped(self, name: str, solid: Solid) -> str:
         """That a hinge of a body would stop no more, or nothing."""
-        for joint in self.assembly.joints:
-            if name in joint.parts:
-                first, second = (solid if part == name else self.made[part] for part in joint.parts)
-                for is_folded in (False, True):
-                    was = self.is_prompt(joint.name, is_folded=is_folded)
-                    if was and not meets(self.turns[joint.name], first, second, PAST, is_folded=is_folded):
-                        return f"leaves {joint.name} without a stop"
+        for joint in self._hinges_of(name):
+            first, second = (solid if part == name else self.made[part] for part in joint.parts)
+            for is_folded in (False, True):
+                was = self.is_prompt(joint.name, is_folded=is_folded)
+                if was and not meets(self.turns[joint.name], first, second, PAST, is_folded=is_folded):
+                    return f"leaves {joint.name} without a stop"
         return ""
 
     def latch(self, stop: Stop) -> Latch | None:
@@ -206,12 +217,26 @@ class Trial:
         first, second = self._parts[joint]
         return made[first], made[second]
 
-    def _with(self, stop: Stop) -> dict[str, Solid] | None:
-        """The two bodies with a stop; None where one of them would fall apart."""
+    def _pocket(self, stop: Stop, name: str) -> Shape | None:
+        """What is to be cut from a third body for a stop to pass; None where there is no room for it."""
+        added, other = printed(stop.added), self.made[name]
+        taken = self._passage.taken(stop.body, added, name, other)
+        if taken is None or not self._is_apart_as_printed(stop.body, added, name, other):
+            return None
+        feet = [(low, high) for base, _, low, high in self._feet if base == name]
+        knuckles_ = [(j.axis.min(0) - j.radius, j.axis.max(0) + j.radius) for j in self._hinges_of(name)]
+        return pocket(other, taken, self.assembly.solution.thickness.gap, [*feet, *knuckles_])
+
+    def _hinges_of(self, name: str) -> list[Joint]:
+        return [joint for joint in self.assembly.joints if name in joint.parts]
+
+    def _with(self, stop: Stop, pockets: Mapping[str, Shape]) -> dict[str, Solid] | None:
+        """The bodies with a stop; None where one of them would fall apart."""
         body = solids.union([self.made[stop.body], printed(stop.added)])
         other = self.made[stop.other]
         other = other if stop.cut is None else solids.cut(other, [printed(stop.cut)])
-        changed = {name: solids.tidied(solid) for name, solid in ((stop.body, body), (stop.other, other))}
+        bored = {name: solids.cut(self.made[name], [printed(hole)]) for name, hole in pockets.items()}
+        changed = {name: solids.tidied(solid) for name, solid in {stop.body: body, stop.other: other, **bored}.items()}
         return changed if all(solids.pieces(s) == 1 and solids.stays_closed(s) for s in changed.values()) else None
 
     def _thin_sides(self, name: str, solid: Solid, near: tuple[Array, Array] | None = None) -> int:
@@ -252,12 +277,15 @@ class Trial:
 
     def _is_apart(self, body: str, added: Solid, name: str, other: Solid, *, in_between: bool = True) -> bool:
         """Whether a piece of a body stays apart from another body all along the fold."""
+        return self._is_apart_as_printed(body, added, name, other) and not self._passage.meets(
+            body, added, name, other, above=CLASH / 2, in_between=in_between
+        )
+
+    def _is_apart_as_printed(self, body: str, added: Solid, name: str, other: Solid) -> bool:
         clearance = self.assembly.solution.thickness.gap
         key = 0 if self._is_open else -1
         piece = solids.moved(added, seen_from(self.poses[name][key], self.poses[body][key]))
-        if solids.gap(piece, other, clearance) < GAP_SHARE * clearance:
-            return False
-        return not self._passage.meets(body, added, name, other, above=CLASH / 2, in_between=in_between)
+        return solids.gap(piece, other, clearance) >= GAP_SHARE * clearance
 
 
 def _around(pieces: list[Solid]) -> tuple[Array, Array]:

@@ -64,16 +64,12 @@ class Passage:
                 return True
         return False
 
-    def taken(self, body: str, piece: Solid, name: str, other: Solid) -> tuple[Array, Array] | None:
-        """Corners (3,) around all that a piece of `body` shares with another body at the instants, as that one sees it.
-
-        None where they never meet.
-        """
-        way, box = self._way(name, body), solids.bounds(other)
-        near = way[_near(_reach(_corners(piece), way), box)]
+    def taken(self, body: str, piece: Solid, name: str, other: Solid) -> list[Solid]:
+        """What a piece of `body` shares with the solid of the body `name` at the instants, as that one sees it."""
+        way = self._way(name, body)
+        near = way[_near(_reach(_corners(piece), way), solids.bounds(other))]
         shared = [solids.common(other, solids.moved(piece, pose)) for pose in near]
-        found = [solids.bounds(part) for part in shared if not part.is_empty()]
-        return (np.min([low for low, _ in found], axis=0), np.max([high for _, high in found], axis=0)) if found else None
+        return [solid for solid in shared if not solid.is_empty()]
 
     def _way(self, name: str, body: str) -> Array:
         """(k, 4, 4) a body at the instants, seen from another one."""

@@ -1,7 +1,7 @@
 """Pockets: room in a body that a stop of two others would meet while it folds.
 
-A stop that reaches further from its axis than the stack is high enters the base that folds down on it. What it takes
-there at the instants of the fold, with a gap all around, is cut from that base as a box. Where little would be left
+A stop that reaches further from its axis than the stack is high enters what folds down on it. What it takes there at
+the instants of the fold, with a gap all around, is cut out as a box along the body's plate. Where little would be left
 beside the box, it goes too: a pocket that almost passes through a plate passes through it. No pocket is cut where a
 hinge is.
 """
@@ -13,7 +13,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from foldfab.fabrication import solids
-from foldfab.fabrication.shapes import Shape, box
+from foldfab.fabrication.places import Plane
+from foldfab.fabrication.shapes import Shape, box, placed
 from foldfab.fabrication.solids import Solid
 from foldfab.geometry.arrays import Array
 
@@ -24,22 +25,23 @@ BEYOND = 0.1
 ROUNDING = 1e-3
 """A wall is as thick as it should be to this, mm."""
 
-Corners = tuple[Array, Array]
-"""Lower and upper corner (3,), mm."""
 
+def pocket(body: Solid, plane: Plane, taken: Iterable[Solid], gap: float, hinges: Iterable[Array]) -> Shape | None:
+    """What is cut from a body with its plate in a plane for what others take from it; None where a hinge is in the way.
 
-def pocket(body: Solid, taken: Corners, gap: float, hinges: Iterable[Corners]) -> Shape | None:
-    """What is cut from a body for what is `taken` from it by another one; None where a hinge is in its way.
-
-    All in the frame of the body.
+    `hinges` are the corners (n, 3) of each that the body has.
     """
-    low, high = taken[0] - gap, taken[1] + gap
-    opened = [_is_thin(body, low, high, axis, way) for axis in range(3) for way in (-1, 1)]
-    low = low - np.where(opened[0::2], SKIN + BEYOND, 0.0)
-    high = high + np.where(opened[1::2], SKIN + BEYOND, 0.0)
-    if any(bool((low < end).all() and (start < high).all()) for start, end in hinges):
-        return None
-    return box(low, high)
+    corners = [solids.bounds(plane.laid(piece)) for piece in taken]
+    low = np.min([c[0] for c in corners], axis=0) - gap
+    high = np.max([c[1] for c in corners], axis=0) + gap
+    laid = plane.laid(body)
+    opened = np.array([[_is_thin(laid, low, high, axis, way) for axis in range(3)] for way in (-1, 1)])
+    low = low - np.where(opened[0], SKIN + BEYOND, 0.0)
+    high = high + np.where(opened[1], SKIN + BEYOND, 0.0)
+    for points in map(plane.local, hinges):
+        if bool((low < points.max(axis=0)).all() and (points.min(axis=0) < high).all()):
+            return None
+    return placed(box(low, high), plane.origin, plane.across)
 
 
 def _is_thin(body: Solid, low: Array, high: Array, axis: int, way: int) -> bool:

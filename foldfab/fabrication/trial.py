@@ -15,17 +15,18 @@ import numpy as np
 
 from foldfab.fabrication import solids
 from foldfab.fabrication.hinges import knuckles
-from foldfab.fabrication.inspect import CLASH, GAP_SHARE, instants
+from foldfab.fabrication.inspect import CLASH, GAP_SHARE, box_corners, instants
 from foldfab.fabrication.latches import tried
 from foldfab.fabrication.model import Assembly, Joint, Latch
+from foldfab.fabrication.mounts import Stop
 from foldfab.fabrication.passing import Passage, seen_from
+from foldfab.fabrication.places import places
 from foldfab.fabrication.plates import ROOT_SHARE, axis_of
 from foldfab.fabrication.pockets import pocket
 from foldfab.fabrication.posture import needs_pins, printed_turn
 from foldfab.fabrication.printed import printed
 from foldfab.fabrication.shapes import Shape, cut, union
 from foldfab.fabrication.solids import Solid
-from foldfab.fabrication.stops import Stop
 from foldfab.fabrication.turning import PAST, meets, stops_at, turn
 from foldfab.fabrication.walls import LINE, thin_sides
 from foldfab.geometry.arrays import Array
@@ -79,6 +80,7 @@ class Trial:
         corners = [self._printed(name, solid) for name, solid in made.items()]
         self._extent = np.min([c[0] for c in corners], axis=0), np.max([c[1] for c in corners], axis=0)
         self._feet = list(_feet(assembly))
+        self._planes = {place.name: place.plane for place in places(assembly.solution)}
         self.turns = {j.name: turn(j, *(self.poses[p] for p in j.parts)) for j in assembly.joints}
         self._ramps = {name: [printed(ramp) for ramp in some] for name, some in ramps.items()}
         self.gives = {name: list(some) for name, some in gives.items()}
@@ -100,6 +102,8 @@ class Trial:
         """The bodies with a stop; None where a body would fall apart, or a third one or the bed is in its way."""
         if not self._fits(stop.body, printed(stop.added)) or (stop.cut is not None and self._is_taken(stop)):
             return None
+        if stop.lip is not None and not self._has_room_for_lip(stop, stop.lip):
+            return None
         pockets: dict[str, Shape] = {}
         for name in self.made:
             if name not in (stop.body, stop.other) and not self._is_clear(stop, {name: self.made[name]}):
@@ -118,7 +122,7 @@ class Trial:
         if not self._is_clear(stop, {stop.other: changed[stop.other]}):
             return False
         # What lies between two holes may be too thin to be printed.
-        mine = _around([printed(shape) for shape in (stop.added, stop.cut) if shape is not None])
+        mine = _around([printed(shape) for shape in (stop.added, stop.lip, stop.cut) if shape is not None])
         near = {name: _around([printed(hole)]) for name, hole in fitted.pockets.items()}
         return all(
             self._thin_sides(name, solid, near.get(name, mine))
@@ -142,6 +146,8 @@ class Trial:
         """Makes a stop."""
         stop = fitted.stop
         self._change(stop.body, Change(True, stop.added))
+        if stop.lip is not None:
+            self._change(stop.other, Change(True, stop.lip))
         if stop.cut is not None:
             self._change(stop.other, Change(False, stop.cut))
         for name, hole in fitted.pockets.items():
@@ -221,11 +227,12 @@ class Trial:
         """What is to be cut from a third body for a stop to pass; None where there is no room for it."""
         added, other = printed(stop.added), self.made[name]
         taken = self._passage.taken(stop.body, added, name, other)
-        if taken is None or not self._is_apart_as_printed(stop.body, added, name, other):
+        if not taken or not self._is_apart_as_printed(stop.body, added, name, other):
             return None
-        feet = [(low, high) for base, _, low, high in self._feet if base == name]
-        knuckles_ = [(j.axis.min(0) - j.radius, j.axis.max(0) + j.radius) for j in self._hinges_of(name)]
-        return pocket(other, taken, self.assembly.solution.thickness.gap, [*feet, *knuckles_])
+        boxes = [(low, high) for base, _, low, high in self._feet if base == name]
+        boxes += [(j.axis.min(0) - j.radius, j.axis.max(0) + j.radius) for j in self._hinges_of(name)]
+        hinges = [box_corners(low, high) for low, high in boxes]
+        return pocket(other, self._planes[name], taken, self.assembly.solution.thickness.gap, hinges)
 
     def _hinges_of(self, name: str) -> list[Joint]:
         return [joint for joint in self.assembly.joints if name in joint.parts]
@@ -234,6 +241,7 @@ class Trial:
         """The bodies with a stop; None where one of them would fall apart."""
         body = solids.union([self.made[stop.body], printed(stop.added)])
         other = self.made[stop.other]
+        other = other if stop.lip is None else solids.union([other, printed(stop.lip)])
         other = other if stop.cut is None else solids.cut(other, [printed(stop.cut)])
         bored = {name: solids.cut(self.made[name], [printed(hole)]) for name, hole in pockets.items()}
         changed = {name: solids.tidied(solid) for name, solid in {stop.body: body, stop.other: other, **bored}.items()}
@@ -246,6 +254,16 @@ class Trial:
         """Whether nothing meets the material of a stop along the whole fold."""
         added = printed(stop.added)
         return all(self._is_apart(stop.body, added, name, solid) for name, solid in others.items())
+
+    def _has_room_for_lip(self, stop: Stop, lip: Shape) -> bool:
+        """Whether nothing meets what a lip adds along the whole fold; what it shares with its own slot is not there."""
+        added = solids.cut(
+            printed(lip), [self.made[stop.other], *([printed(stop.cut)] if stop.cut is not None else [])]
+        )
+        others = [name for name in self.made if name != stop.other]
+        return self._fits(stop.other, added) and all(
+            self._is_apart(stop.other, added, name, self.made[name]) for name in others
+        )
 
     def _is_taken(self, stop: Stop) -> bool:
         """Whether what is cut away is, or holds, something else."""

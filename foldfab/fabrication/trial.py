@@ -85,6 +85,7 @@ class Trial:
         self._ramps = {name: [printed(ramp) for ramp in some] for name, some in ramps.items()}
         self.gives = {name: list(some) for name, some in gives.items()}
         """By panel, what of it gives way while it passes its latches."""
+        self._ridges: dict[str, list[tuple[Array, Array]]] = {}
         self.changes: dict[str, list[Change]] = {name: [] for name in made}
         """By body, what stops and latches made of it, in their order."""
         self._parts = {j.name: j.parts for j in assembly.joints}
@@ -216,6 +217,7 @@ class Trial:
             self._change(stop.body, Change(False, stop.detent.slit))
             self._change(stop.other, Change(True, stop.detent.ridges))
             self.gives.setdefault(stop.body, []).append(printed(stop.detent.pressed))
+            self._ridges.setdefault(stop.other, []).append(solids.bounds(printed(stop.detent.ridges)))
         return found
 
     def _halves(self, joint: str, fitted: Fitted | None = None) -> tuple[Solid, Solid]:
@@ -227,10 +229,11 @@ class Trial:
         """What is to be cut from a third body for a stop to pass; None where there is no room for it."""
         added, other = printed(stop.added), self.made[name]
         taken = self._passage.taken(stop.body, added, name, other)
-        if not taken or not self._is_apart_as_printed(stop.body, added, name, other):
+        if not taken:
             return None
         boxes = [(low, high) for base, _, low, high in self._feet if base == name]
         boxes += [(j.axis.min(0) - j.radius, j.axis.max(0) + j.radius) for j in self._hinges_of(name)]
+        boxes += self._ridges.get(name, [])
         hinges = [box_corners(low, high) for low, high in boxes]
         return pocket(other, self._planes[name], taken, self.assembly.solution.thickness.gap, hinges)
 
@@ -256,13 +259,13 @@ class Trial:
         return all(self._is_apart(stop.body, added, name, solid) for name, solid in others.items())
 
     def _has_room_for_lip(self, stop: Stop, lip: Shape) -> bool:
-        """Whether nothing meets what a lip adds along the whole fold; what it shares with its own slot is not there."""
-        added = solids.cut(
-            printed(lip), [self.made[stop.other], *([printed(stop.cut)] if stop.cut is not None else [])]
-        )
-        others = [name for name in self.made if name != stop.other]
-        return self._fits(stop.other, added) and all(
-            self._is_apart(stop.other, added, name, self.made[name]) for name in others
+        """Whether a lip adds to its base, and nothing meets what of it is left beside its slot along the whole fold."""
+        holes = [] if stop.cut is None else [printed(stop.cut)]
+        added = solids.cut(printed(lip), [self.made[stop.other], *holes])
+        if added.is_empty() or not self._fits(stop.other, added):
+            return False
+        return all(
+            self._is_apart(stop.other, added, name, other) for name, other in self.made.items() if name != stop.other
         )
 
     def _is_taken(self, stop: Stop) -> bool:
@@ -295,15 +298,12 @@ class Trial:
 
     def _is_apart(self, body: str, added: Solid, name: str, other: Solid, *, in_between: bool = True) -> bool:
         """Whether a piece of a body stays apart from another body all along the fold."""
-        return self._is_apart_as_printed(body, added, name, other) and not self._passage.meets(
-            body, added, name, other, above=CLASH / 2, in_between=in_between
-        )
-
-    def _is_apart_as_printed(self, body: str, added: Solid, name: str, other: Solid) -> bool:
         clearance = self.assembly.solution.thickness.gap
         key = 0 if self._is_open else -1
         piece = solids.moved(added, seen_from(self.poses[name][key], self.poses[body][key]))
-        return solids.gap(piece, other, clearance) >= GAP_SHARE * clearance
+        if solids.gap(piece, other, clearance) < GAP_SHARE * clearance:
+            return False
+        return not self._passage.meets(body, added, name, other, above=CLASH / 2, in_between=in_between)
 
 
 def _around(pieces: list[Solid]) -> tuple[Array, Array]:

@@ -43,6 +43,8 @@ SKIN = 0.8
 """Less than this below a slot is not left standing, mm."""
 POST = 1.6
 """Thickness of a post, mm."""
+HOLDING = 2.0
+"""How much of a lip there is beside a slot with the ridges of a latch, mm."""
 FAR = 1000.0
 """Beyond everything, mm."""
 EDGE = 2 * LINE
@@ -52,8 +54,8 @@ _LYING = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 """Turns a prism, drawn along y, so that it is drawn along -z and its outline lies in x and y."""
 
 
-def levers(mount: Mount) -> Iterator[Stop]:
-    """What stops it open with faces that are a clearance apart, best first."""
+def levers(mount: Mount, *, is_latched: bool) -> Iterator[Stop]:
+    """What stops it open with faces that are a clearance apart, best first; `is_latched` where it is to be held there."""
     is_long = _room_below(mount, mount.lean) >= _lever(mount)
     if is_long:
         yield from _tongues(mount, mount.lean)
@@ -62,7 +64,7 @@ def levers(mount: Mount) -> Iterator[Stop]:
     lean = _long(mount)
     if lean is not None:
         yield from _tongues(mount, lean)
-        yield from _tongues(mount, lean, has_lip=True)
+        yield from _tongues(mount, lean, lip=HOLDING if is_latched else 0.0)
     yield from _arms(mount)
     if not is_long:
         yield from _tongues(mount, mount.lean)
@@ -133,7 +135,7 @@ def _long(mount: Mount) -> float | None:
     return float(np.arctan2(front, _lever(mount)) + np.arccos(deepest / reach)) if deepest < reach else None
 
 
-def _tongues(mount: Mount, lean: float, *, has_lip: bool = False) -> Iterator[Stop]:
+def _tongues(mount: Mount, lean: float, *, lip: float | None = None) -> Iterator[Stop]:
     gap, front, back = mount.thickness.gap, _front(mount), _back(mount, lean)
     close = CLOSE * gap
     reach = min(close / np.sin(AIM), _room_below(mount, lean))
@@ -147,11 +149,16 @@ def _tongues(mount: Mount, lean: float, *, has_lip: bool = False) -> Iterator[St
         slot = leant(box((-sweep - spare, low - gap, bottom), (front + close, high + gap, top)), lean)
         slot = cut(slot, [_below(mount.depth + OPEN)]) if is_through else slot
         added = cut(leant(box((-back, low, -reach), (front, high, 0.0)), lean), [_below(mount.depth - LIFT)])
-        lip = box((-reach * np.sin(lean), low, -mount.depth), (0.0, high, -mount.thickness.axis_height))
         holding = detent(back, front, reach, gap, low, high)
         holding = holding and holding.at(np.zeros(3), leaning(lean))
-        bodies = mount.panel, added, mount.base
-        yield Stop(mount.joint, "tongue", False, *bodies, lip if has_lip else None, slot, holding)
+        end = None if lip is None else _lip(mount, reach * float(np.sin(lean)), (low, high), lip)
+        yield Stop(mount.joint, "tongue", False, mount.panel, added, mount.base, end, slot, holding)
+
+
+def _lip(mount: Mount, reach: float, span: Mark, beside: float) -> Shape:
+    """What a base is given to reach as far as a tongue, and what there is beside its slot, mm."""
+    low, high = span[0] - beside, span[1] + beside
+    return box((-reach - beside, low, -mount.depth), (0.0, high, -mount.thickness.axis_height))
 
 
 def _arms(mount: Mount) -> Iterator[Stop]:

@@ -43,10 +43,10 @@ def stops(solution: FoldSolution, chain: Chain, hinge: int, *, in_open: bool) ->
         yield from make(chain, hinge, solution.thickness.of(chain.panel), names(chain, hinge)[0])
         return
     here = mount(solution, chain, hinge)
-    is_lever = in_open or solution.scaffold.recipe.print.latch
-    for stop in () if is_lever else levers.heels(here):
+    is_latched = solution.scaffold.recipe.print.latch
+    for stop in () if in_open or is_latched else levers.heels(here):
         yield here.placed(stop)
-    for stop in levers.levers(here):
+    for stop in levers.levers(here, is_latched=is_latched):
         yield here.placed(stop)
 
 

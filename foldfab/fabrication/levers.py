@@ -110,33 +110,35 @@ def _lever(mount: Mount) -> float:
     return CLOSE * mount.thickness.gap / float(np.sin(LEAST))
 
 
-def _front(mount: Mount) -> float:
-    """How far a tongue reaches from its middle to where its panel folds, mm."""
-    return mount.thickness.panel / 20
+def _sides(mount: Mount, lean: float) -> tuple[float, float]:
+    """How far a tongue reaches from its middle to its back and to its front, where its panel folds, mm.
 
-
-def _back(mount: Mount, lean: float) -> float:
-    """And to the other side: as thick as its panel along it; else as thin as may be, as it leaves its panel's layer."""
-    return mount.thickness.panel / 2 if lean == mount.lean >= 0 else NARROWEST - _front(mount)
+    Along its panel it is as thick as that. Else it leaves its panel's layer, is as thin as may be, and keeps its back
+    away from a hinge that folds down on it.
+    """
+    half = mount.thickness.panel / 2
+    if lean != mount.lean:
+        return NARROWEST / 3, NARROWEST * 2 / 3
+    return (half if lean >= 0 else NARROWEST - half / 10), half / 10
 
 
 def _room_below(mount: Mount, lean: float) -> float:
     """How far a tongue that leans so may reach from the axis, mm: it comes out below its base at no time."""
-    deepest = mount.depth - LIFT
+    deepest, (back, front) = mount.depth - LIFT, _sides(mount, lean)
     if lean < 0:
-        return float(np.sqrt(deepest**2 - _back(mount, lean) ** 2))
-    return (deepest - _front(mount) * float(np.sin(lean))) / float(np.cos(lean))
+        return float(np.sqrt(deepest**2 - back**2))
+    return (deepest - front * float(np.sin(lean))) / float(np.cos(lean))
 
 
 def _long(mount: Mount) -> float | None:
     """The lean at which a tongue is just long enough; None where it is so upright."""
-    front, deepest = _front(mount), mount.depth - LIFT
+    front, deepest = NARROWEST * 2 / 3, mount.depth - LIFT
     reach = float(np.hypot(_lever(mount), front))
     return float(np.arctan2(front, _lever(mount)) + np.arccos(deepest / reach)) if deepest < reach else None
 
 
 def _tongues(mount: Mount, lean: float, *, lip: float | None = None) -> Iterator[Stop]:
-    gap, front, back = mount.thickness.gap, _front(mount), _back(mount, lean)
+    gap, (back, front) = mount.thickness.gap, _sides(mount, lean)
     close = CLOSE * gap
     reach = min(close / np.sin(AIM), _room_below(mount, lean))
     sweep = float(np.hypot(mount.thickness.panel / 2, reach)) + gap

@@ -78,7 +78,7 @@ def heels(mount: Mount) -> Iterator[Stop]:
     lift = lever * float(np.sin(NEAR))
     beyond = leant(box((-FAR, -FAR, -FAR), (-half, FAR, FAR)), mount.lean)
     for low, high in mount.marks.follower if lever > 0 else ():
-        heel = cut(box((-half, low, lift - height), (-lever / 2, high, 0.0)), [beyond])
+        heel = cut(box((-half, low, lift - height), (min(half / 2 - lever, 0.0), high, 0.0)), [beyond])
         yield Stop(mount.joint, "heel", False, mount.panel, heel, mount.base)
 
 

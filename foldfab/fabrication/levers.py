@@ -55,7 +55,7 @@ _LYING = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
 
 def levers(mount: Mount, *, is_latched: bool) -> Iterator[Stop]:
-    """What stops it open with faces that are a clearance apart, best first; `is_latched` where it is to be held there."""
+    """What stops it open with faces that are a clearance apart, best first; `is_latched` if it is to be held there."""
     is_long = _room_below(mount, mount.lean) >= _lever(mount)
     if is_long:
         yield from _tongues(mount, mount.lean)

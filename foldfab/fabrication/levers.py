@@ -6,7 +6,6 @@ Printed open, faces are a clearance g apart, and a stop has to be some 20 g away
   the layer of its own panel, so that the stack stays as low as it is. Where the base is too thin it leans back until it
   is long enough, and stands up out of that layer once it is folded; where the base ends too early, it gets a lip.
 - *arm*: the same, flat on the base behind the panel, where no slot may be.
-- *post*: the base reaches up behind a panel that leans over its edge.
 
 Printed otherwise they may be closer: a *heel* is a squared knuckle. At the folded end, where the base ends too early, a
 *rest* reaches out below the panel.
@@ -23,7 +22,7 @@ from foldfab.fabrication.hinges import Mark
 from foldfab.fabrication.latches import detent
 from foldfab.fabrication.mounts import NARROWEST, WIDEST, Mount, Stop, leaning, leant, spots, within
 from foldfab.fabrication.relief import STEEP
-from foldfab.fabrication.shapes import Shape, box, cut, placed, prism, union
+from foldfab.fabrication.shapes import Shape, box, cut, placed, prism
 from foldfab.fabrication.walls import LINE
 from foldfab.geometry.arrays import Array
 
@@ -41,8 +40,6 @@ OPEN = 0.1
 """How far a slot is cut beyond the far face of its base, mm; another panel may fold there."""
 SKIN = 0.8
 """Less than this below a slot is not left standing, mm."""
-POST = 1.6
-"""Thickness of a post, mm."""
 HOLDING = 2.0
 """How much of a lip there is beside a slot with the ridges of a latch, mm."""
 FAR = 1000.0
@@ -59,8 +56,6 @@ def levers(mount: Mount, *, is_latched: bool) -> Iterator[Stop]:
     is_long = _room_below(mount, mount.lean) >= _lever(mount)
     if is_long:
         yield from _tongues(mount, mount.lean)
-    if mount.lean < 0:
-        yield from _posts(mount)
     lean = _long(mount)
     if lean is not None:
         yield from _tongues(mount, lean)
@@ -168,16 +163,6 @@ def _arms(mount: Mount) -> Iterator[Stop]:
     for low, high in within(mount.marks.follower, mount.thickness.gap):
         arm = box((-_lever(mount), low, under), (0.0, high, under + NARROWEST))
         yield Stop(mount.joint, "arm", False, mount.panel, arm, mount.base)
-
-
-def _posts(mount: Mount) -> Iterator[Stop]:
-    near, height = mount.thickness.panel / 2 + CLOSE * mount.thickness.gap, mount.thickness.axis_height
-    end = -(near + POST) / float(np.cos(mount.lean)) - height * float(np.tan(mount.lean))
-    for low, high in spots(mount.span, WIDEST, mount.marks.free):
-        post = leant(box((-near - POST, low, -FAR), (-near, high, _lever(mount))), mount.lean)
-        foot = box((end, low, -mount.depth), (0.0, high, -height))
-        whole = union([cut(post, [_below(mount.depth)]), foot])
-        yield Stop(mount.joint, "post", False, mount.base, whole, mount.panel)
 
 
 def _below(depth: float) -> Shape:

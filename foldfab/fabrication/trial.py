@@ -202,6 +202,13 @@ class Trial:
                     return f"leaves {joint.name} without a stop"
         return ""
 
+    def hinges(self, name: str) -> list[Array]:
+        """The corners (8, 3) of all that a pocket in a body has to leave: knuckles, feet, and ridges of latches."""
+        boxes = [(low, high) for base, _, low, high in self._feet if base == name]
+        boxes += [(j.axis.min(0) - j.radius, j.axis.max(0) + j.radius) for j in self._hinges_of(name)]
+        boxes += self._ridges.get(name, [])
+        return [box_corners(low, high) for low, high in boxes]
+
     def latch(self, stop: Stop) -> Latch | None:
         """Makes the latch of a stop that is made, where it holds and lets go."""
         if stop.detent is None:
@@ -227,15 +234,9 @@ class Trial:
 
     def _pocket(self, stop: Stop, name: str) -> Shape | None:
         """What is to be cut from a third body for a stop to pass; None where there is no room for it."""
-        added, other = printed(stop.added), self.made[name]
-        taken = self._passage.taken(stop.body, added, name, other)
-        if not taken:
-            return None
-        boxes = [(low, high) for base, _, low, high in self._feet if base == name]
-        boxes += [(j.axis.min(0) - j.radius, j.axis.max(0) + j.radius) for j in self._hinges_of(name)]
-        boxes += self._ridges.get(name, [])
-        hinges = [box_corners(low, high) for low, high in boxes]
-        return pocket(other, self._planes[name], taken, self.assembly.solution.thickness.gap, hinges)
+        other, gap = self.made[name], self.assembly.solution.thickness.gap
+        taken = self._passage.taken(stop.body, printed(stop.added), name, other)
+        return pocket(other, self._planes[name], taken, gap, self.hinges(name)) if taken else None
 
     def _hinges_of(self, name: str) -> list[Joint]:
         return [joint for joint in self.assembly.joints if name in joint.parts]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,11 +12,13 @@ from foldfab.fabrication import solids
 from foldfab.fabrication.build import build
 from foldfab.fabrication.inspect import instants
 from foldfab.fabrication.levers import levers
-from foldfab.fabrication.mounts import mount
+from foldfab.fabrication.model import Assembly
+from foldfab.fabrication.mounts import Stop, mount
 from foldfab.fabrication.passing import Passage
 from foldfab.fabrication.places import Plane
 from foldfab.fabrication.pockets import pocket
 from foldfab.fabrication.printed import printed
+from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.trial import Trial
 from foldfab.folding.model import FoldSolution
 
@@ -56,29 +59,83 @@ def test_a_pocket_lies_along_the_plate_of_its_body() -> None:
     assert (low[0], high[0], low[2]) == pytest.approx((19.7, 24.3, 1.2))
 
 
-def test_a_tongue_that_stands_up_folded_gets_a_pocket_in_the_base_that_comes_down_on_it(
-    solution: Callable[..., FoldSolution],
-) -> None:
-    made = build(solution("same_way", thickness=3.0), "open")
-    bare = {body.name: solids.from_mesh(body.vertices, body.faces) for body in made.bodies}
+@pytest.fixture(scope="module")
+def made(solution: Callable[..., FoldSolution]) -> Assembly:
+    """A ceiling of 3 mm that swings over on two walls."""
+    return build(solution("same_way", thickness=3.0), "open")
+
+
+@pytest.fixture(scope="module")
+def bare(made: Assembly) -> dict[str, Solid]:
+    """Its solids, with the pockets that they have."""
+    return {body.name: solids.from_mesh(body.vertices, body.faces) for body in made.bodies}
+
+
+@pytest.fixture(scope="module")
+def filled(bare: dict[str, Solid]) -> dict[str, Solid]:
+    """The same without pockets in the ceiling."""
     low, high = solids.bounds(bare["ceiling"])
     low[2] = high[2] - 2.9
-    filled = {**bare, "ceiling": solids.union([bare["ceiling"], solids.box(low, high)])}
-    chain = made.solution.chain("far")
-    stop = mount(made.solution, chain, 0)
-    tongue = stop.placed(next(levers(stop, is_latched=False)))
+    return {**bare, "ceiling": solids.union([bare["ceiling"], solids.box(low, high)])}
+
+
+@pytest.fixture(scope="module")
+def tongue(made: Assembly) -> Stop:
+    """What stops one of the walls on the ground."""
+    here = mount(made.solution, made.solution.chain("far"), 0)
+    return here.placed(next(levers(here, is_latched=False)))
+
+
+def test_a_tongue_that_stands_up_folded_gets_a_pocket_in_the_base_that_comes_down_on_it(
+    made: Assembly, bare: dict[str, Solid], filled: dict[str, Solid], tongue: Stop
+) -> None:
+    passage = Passage(made.solution, instants(made))
     for solid in (bare, filled):
-        fitted = Trial(made, solid).fitted(tongue)
+        trial = Trial(made, solid)
+        fitted = trial.fitted(tongue)
         assert fitted is not None
         assert set(fitted.pockets) == (set() if solid is bare else {"ceiling"})
-        trial = Trial(made, solid)
         trial.take(fitted)
-        passage = Passage(made.solution, instants(made))
-        met = [
-            passage.meets("far", printed(tongue.added), "ceiling", s["ceiling"], above=0.005)
-            for s in (solid, trial.made)
-        ]
+        pair = [s["ceiling"] for s in (solid, trial.made)]
+        met = [passage.meets("far", printed(tongue.added), "ceiling", s, above=0.005) for s in pair]
         assert met == [solid is filled, False]
+
+
+def test_a_pocket_that_takes_the_stop_of_another_hinge_is_not_cut(
+    made: Assembly, bare: dict[str, Solid], filled: dict[str, Solid], tongue: Stop
+) -> None:
+    # With the slots that a filled ceiling lacks.
+    slotted = {**bare, "ceiling": solids.union([bare["ceiling"], *pieces_far_from_slots(made, bare, filled)])}
+    trial = Trial(made, slotted)
+    fitted = trial.fitted(tongue)
+    assert fitted is not None and set(fitted.pockets) == {"ceiling"}
+    assert trial.has_room(fitted)
+    hinge = next(joint for joint in made.joints if joint.name == "near~ceiling")
+    reach = np.array([12, 1, 8])
+    around = solids.box(hinge.axis.min(0) - reach, hinge.axis.max(0) + reach)
+    spoilt = {**fitted.changed, "ceiling": solids.cut(fitted.changed["ceiling"], [around])}
+    assert not trial.has_room(replace(fitted, changed=spoilt))
+
+
+def test_pockets_leave_the_ridges_of_a_latch(assembled: Callable[..., Assembly]) -> None:
+    made = assembled("table")
+    trial = Trial(made, {body.name: solids.from_mesh(body.vertices, body.faces) for body in made.bodies})
+    here = mount(made.solution, made.solution.chain("leg-left"), 0)
+    before = len(trial.hinges("top"))
+    stop = here.placed(next(levers(here, is_latched=True)))
+    assert stop.detent is not None and trial.latch(stop) is not None
+    ridges = solids.bounds(printed(stop.detent.ridges))
+    *_, last = trial.hinges("top")
+    assert len(trial.hinges("top")) == before + 1
+    assert (last.min(axis=0) == ridges[0]).all() and (last.max(axis=0) == ridges[1]).all()
+
+
+def pieces_far_from_slots(made: Assembly, bare: dict[str, Solid], filled: dict[str, Solid]) -> list[Solid]:
+    """What fills the pockets of the ceiling and not the slots around its hinges."""
+    ends = [joint.axis for joint in made.joints if "ceiling" in joint.parts]
+    reach = np.array([8, 1, 8])
+    slots = [solids.box(axis.min(0) - reach, axis.max(0) + reach) for axis in ends]
+    return [solids.cut(filled["ceiling"], [bare["ceiling"], *slots])]
 
 
 def holes(bottom: float, at: float = 20.0) -> tuple[float, float, float]:

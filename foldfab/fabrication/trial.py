@@ -1,8 +1,8 @@
 """Which stops and latches there is room for: each is tried on the solids along the whole fold before it is made.
 
 A piece is taken where its body stays one body, no gap as printed gets narrower than the clearance, nothing meets it at
-any time, what it is let into is not another hinge's foot, and the print still fits its bed. What costs least is asked
-first.
+any time once it has its pockets, what it is let into is not another hinge's foot, and the print still fits its bed. What
+costs least is asked first.
 """
 
 from __future__ import annotations

@@ -55,6 +55,15 @@ def test_thin_plates_stop_at_both_ends(name: str, posture: str, solution: Callab
     assert "stop" not in {finding.code for finding in assembly.findings}
 
 
+@pytest.mark.parametrize("name", ["same_way", "corner"])
+def test_what_a_body_is_made_of_has_its_lips_slots_and_pockets(
+    name: str, solution: Callable[..., FoldSolution]
+) -> None:
+    assembly = build(solution(name, thickness=3.0), "open")
+    for body, solid in as_solids(assembly).items():
+        assert printed(assembly.shapes[body]).volume() == pytest.approx(solid.volume(), abs=0.01)
+
+
 def test_a_tongue_leans_where_its_base_is_thin(hinge_at: Callable[..., Mount]) -> None:
     thick, thin = (tongues(hinge_at("t_scaffold", thickness))[0] for thickness in (4.0, 3.0))
     assert solids.bounds(thick)[0][0] == pytest.approx(-2.0)

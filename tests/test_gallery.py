@@ -51,6 +51,12 @@ def test_a_sheet_is_what_comes_out_now(recipe: Path) -> None:
     assert not found, f"prints/{recipe.stem}/sheet.json:\n  " + "\n  ".join(found[:SLIM]) + f"{more}\n{RENEW}"
 
 
+@pytest.mark.parametrize("recipe", SHEETS, ids=lambda path: path.stem)
+def test_every_hinge_of_the_gallery_stops_within_three_degrees(recipe: Path) -> None:
+    turned = {joint["name"]: joint["stop_deg"] for joint in golden(recipe)["joints"]}
+    assert {name for name, ends in turned.items() if None in ends or max(ends) > 3.0} == set()
+
+
 CHANGES: dict[str, Callable[[dict[str, Any]], None]] = {
     "a volume by 0.2 %": lambda sheet: _scale(sheet["parts"][0], "volume_mm3", 1.002),
     "the scale": lambda sheet: _scale(sheet, "scale", 1.00001),

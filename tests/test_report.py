@@ -108,7 +108,7 @@ def test_summary_says_where_a_print_on_edge_wants_support() -> None:
     made = replace(assembly("edge"), up=np.array([0.0, 1.0, 0.0]))
     assert "it stands on edge: allow no supports" in report.summary(made, Path("x"))
     low, high = made.bodies[1], made.bodies[0]
-    lifted = replace(made, bodies=(replace(high, vertices=high.vertices + [0.0, 9.0, 0.0]), low))
+    lifted = replace(made, bodies=(replace(high, vertices=high.vertices + np.array([0.0, 9.0, 0.0])), low))
     assert "on edge: give supports below high, and nowhere else" in report.summary(lifted, Path("x"))
     assert "on edge: allow no supports" in report.summary(replace(lifted, propped=(lifted.bodies[0],)), Path("x"))
     level = replace(lifted, findings=(Finding(LEVEL, "the undersides of hinge-1 stay flat"),))

@@ -156,7 +156,7 @@ def _gaps(assembly: Assembly, made: dict[str, Solid]) -> list[Finding]:
 def _fold(assembly: Assembly, made: dict[str, Solid], tell: Callable[[float], None]) -> list[Finding]:
     times = instants(assembly)
     poses = configuration(assembly.solution, times)
-    corners = {n: _corners(*solids.bounds(s)) for n, s in made.items()}
+    corners = {n: box_corners(*solids.bounds(s)) for n, s in made.items()}
     last: dict[tuple[str, str], Array] = {}
     clashes: dict[tuple[str, str], tuple[float, float]] = {}
     for k, t in enumerate(times):
@@ -293,7 +293,8 @@ def _near(a: tuple[Array, Array], b: tuple[Array, Array], gap: float) -> bool:
     return bool((a[0] <= b[1] + gap).all() and (b[0] <= a[1] + gap).all())
 
 
-def _corners(low: Array, high: Array) -> Array:
+def box_corners(low: Array, high: Array) -> Array:
+    """(8, 3) those of the box between two of them."""
     return np.array(list(itertools.product(*zip(low, high, strict=True))))
 
 

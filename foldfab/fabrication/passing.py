@@ -64,6 +64,13 @@ class Passage:
                 return True
         return False
 
+    def taken(self, body: str, piece: Solid, name: str, other: Solid) -> list[Solid]:
+        """What a piece of `body` shares with the solid of the body `name` at the instants, as that one sees it."""
+        way = self._way(name, body)
+        near = way[_near(_reach(_corners(piece), way), solids.bounds(other))]
+        shared = [solids.common(other, solids.moved(piece, pose)) for pose in near]
+        return [solid for solid in shared if not solid.is_empty()]
+
     def _way(self, name: str, body: str) -> Array:
         """(k, 4, 4) a body at the instants, seen from another one."""
         if (name, body) not in self._ways:

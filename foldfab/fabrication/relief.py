@@ -3,8 +3,8 @@
 There, each knuckle above a gap is a shelf that sticks out of its plate or panel. Its lower face is cut to a steep ramp
 that starts where the shelf is rooted; a cone below it widens upward until it meets the ramp. Material is only
 taken away, so that every gap and every clearance of the fold stays. What the ramps leave of a socket no longer encloses
-the cone in it, but each cone that points down still stands in a whole socket, so that hinges hold. Where knuckles are so
-short that a ramp would open that socket too, the carrier's undersides stay flat, and want support.
+the cone in it, but each cone that points down still stands in a whole socket, so that hinges hold. Where knuckles are
+so short that a ramp would open that socket too, the carrier's undersides stay flat, and want support.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ def relief(
         shelves = _shelves(chain, solution.thickness.of(chain.panel), up)
         for pair, halves in zip(pairwise(chain.bodies), zip(shelves[::2], shelves[1::2], strict=True), strict=True):
             joint = named["~".join(pair)]
-            ramps = [(name, _ramps(made[name], *rest, up)) for name, *rest in halves]
+            ramps = [(name, _ramps(made[name], shelf, at, rows, up)) for name, shelf, at, rows in halves]
             kept = next((some for some in (ramps, ramps[1:]) if _holds(joint, made, some, solution.thickness.gap)), [])
             level += [joint.name] if kept != ramps else []
             for name, some in kept:

@@ -6,9 +6,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from foldfab.fabrication.model import Assembly, Joint, Latch
+from foldfab.fabrication.mounts import Stop
 from foldfab.fabrication.shapes import Shape
 from foldfab.fabrication.solids import Solid
-from foldfab.fabrication.stops import Stop, rests, stops
+from foldfab.fabrication.stops import rests, stops
 from foldfab.fabrication.trial import Change, Fitted, Trial
 from foldfab.folding.model import Chain
 
@@ -41,8 +42,8 @@ def stopped(assembly: Assembly, made: dict[str, Solid], ramps: Mapping[str, list
         ends = stops(assembly.solution, chain, hinge, in_open=assembly.posture in ("open", "plate"))
         ways = ((False, ends), (True, rests(assembly.solution, chain, hinge)))
         if assembly.posture == "edge":
-            # There, a tongue would begin in the air.
-            ends = (stop for stop in ends if stop.kind != "tongue")
+            # There, what reaches out of a knuckle or a base would begin in the air.
+            ends = (stop for stop in ends if stop.kind in ("heel", "butt"))
             ways = ((False, ends), (True, rests(assembly.solution, chain, hinge, assembly.up)))
         for is_folded, candidates in ways:
             best = _best(trial, name, candidates, is_folded)

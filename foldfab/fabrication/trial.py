@@ -1,8 +1,8 @@
 """Which stops and latches there is room for: each is tried on the solids along the whole fold before it is made.
 
 A piece is taken where its body stays one body, no gap as printed gets narrower than the clearance, nothing meets it at
-any time, what it is let into is not another hinge's foot, and the print still fits its bed. What costs least is asked
-first.
+any time once it has its pockets, what it is let into is not another hinge's foot, and the print still fits its bed.
+What costs least is asked first.
 """
 
 from __future__ import annotations
@@ -15,16 +15,18 @@ import numpy as np
 
 from foldfab.fabrication import solids
 from foldfab.fabrication.hinges import knuckles
-from foldfab.fabrication.inspect import CLASH, GAP_SHARE, instants
+from foldfab.fabrication.inspect import CLASH, GAP_SHARE, box_corners, instants
 from foldfab.fabrication.latches import tried
-from foldfab.fabrication.model import Assembly, Latch
+from foldfab.fabrication.model import Assembly, Joint, Latch
+from foldfab.fabrication.mounts import Stop
 from foldfab.fabrication.passing import Passage, seen_from
+from foldfab.fabrication.places import places
 from foldfab.fabrication.plates import ROOT_SHARE, axis_of
+from foldfab.fabrication.pockets import pocket
 from foldfab.fabrication.posture import needs_pins, printed_turn
 from foldfab.fabrication.printed import printed
 from foldfab.fabrication.shapes import Shape, cut, union
 from foldfab.fabrication.solids import Solid
-from foldfab.fabrication.stops import Stop
 from foldfab.fabrication.turning import PAST, meets, stops_at, turn
 from foldfab.fabrication.walls import LINE, thin_sides
 from foldfab.geometry.arrays import Array
@@ -51,10 +53,11 @@ def changed(shape: Shape, changes: Iterable[Change]) -> Shape:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Fitted:
-    """A stop with the two bodies that it changes."""
+    """A stop with the bodies that it changes: its two, and those in which it needs a pocket."""
 
     stop: Stop
     changed: dict[str, Solid]
+    pockets: dict[str, Shape]
 
 
 class Trial:
@@ -77,10 +80,12 @@ class Trial:
         corners = [self._printed(name, solid) for name, solid in made.items()]
         self._extent = np.min([c[0] for c in corners], axis=0), np.max([c[1] for c in corners], axis=0)
         self._feet = list(_feet(assembly))
+        self._planes = {place.name: place.plane for place in places(assembly.solution)}
         self.turns = {j.name: turn(j, *(self.poses[p] for p in j.parts)) for j in assembly.joints}
         self._ramps = {name: [printed(ramp) for ramp in some] for name, some in ramps.items()}
         self.gives = {name: list(some) for name, some in gives.items()}
         """By panel, what of it gives way while it passes its latches."""
+        self._ridges: dict[str, list[tuple[Array, Array]]] = {}
         self.changes: dict[str, list[Change]] = {name: [] for name in made}
         """By body, what stops and latches made of it, in their order."""
         self._parts = {j.name: j.parts for j in assembly.joints}
@@ -98,11 +103,19 @@ class Trial:
         """The bodies with a stop; None where a body would fall apart, or a third one or the bed is in its way."""
         if not self._fits(stop.body, printed(stop.added)) or (stop.cut is not None and self._is_taken(stop)):
             return None
-        others = [name for name in self.made if name not in (stop.body, stop.other)]
-        if not self._is_clear(stop, {name: self.made[name] for name in others}):
+        if stop.lip is not None and not self._has_room_for_lip(stop, stop.lip):
             return None
-        changed = self._with(stop)
-        return None if changed is None else Fitted(stop, changed)
+        pockets: dict[str, Shape] = {}
+        for name in self.made:
+            if name not in (stop.body, stop.other) and not self._is_clear(stop, {name: self.made[name]}):
+                hole = self._pocket(stop, name)
+                if hole is None:
+                    return None
+                pockets[name] = hole
+        changed = self._with(stop, pockets)
+        if changed is None or not self._is_clear(stop, {name: changed[name] for name in pockets}):
+            return None
+        return Fitted(stop, changed, pockets)
 
     def has_room(self, fitted: Fitted) -> bool:
         """Whether a stop stays apart from what it stops against along the whole fold, and leaves no thin wall."""
@@ -110,11 +123,13 @@ class Trial:
         if not self._is_clear(stop, {stop.other: changed[stop.other]}):
             return False
         # What lies between two holes may be too thin to be printed.
-        near = _around([printed(shape) for shape in (stop.added, stop.cut) if shape is not None])
+        mine = _around([printed(shape) for shape in (stop.added, stop.lip, stop.cut) if shape is not None])
+        near = {name: _around([printed(hole)]) for name, hole in fitted.pockets.items()}
         return all(
-            self._thin_sides(name, solid, near) <= self._thin_sides(name, self._plain[name], near)
+            self._thin_sides(name, solid, near.get(name, mine))
+            <= self._thin_sides(name, self._plain[name], near.get(name, mine))
             for name, solid in changed.items()
-        )
+        ) and not any(self._unstopped(name, changed[name]) for name in fitted.pockets)
 
     def soonest(self, late: Sequence[Fitted]) -> Fitted | None:
         """Of stops that work beyond `PAST`, the one that works first and has room; None where none does better."""
@@ -132,8 +147,12 @@ class Trial:
         """Makes a stop."""
         stop = fitted.stop
         self._change(stop.body, Change(True, stop.added))
+        if stop.lip is not None:
+            self._change(stop.other, Change(True, stop.lip))
         if stop.cut is not None:
             self._change(stop.other, Change(False, stop.cut))
+        for name, hole in fitted.pockets.items():
+            self._change(name, Change(False, hole))
         for name, solid in fitted.changed.items():
             self._make(name, solid)
 
@@ -175,14 +194,20 @@ class Trial:
 
     def _unstopped(self, name: str, solid: Solid) -> str:
         """That a hinge of a body would stop no more, or nothing."""
-        for joint in self.assembly.joints:
-            if name in joint.parts:
-                first, second = (solid if part == name else self.made[part] for part in joint.parts)
-                for is_folded in (False, True):
-                    was = self.is_prompt(joint.name, is_folded=is_folded)
-                    if was and not meets(self.turns[joint.name], first, second, PAST, is_folded=is_folded):
-                        return f"leaves {joint.name} without a stop"
+        for joint in self._hinges_of(name):
+            first, second = (solid if part == name else self.made[part] for part in joint.parts)
+            for is_folded in (False, True):
+                was = self.is_prompt(joint.name, is_folded=is_folded)
+                if was and not meets(self.turns[joint.name], first, second, PAST, is_folded=is_folded):
+                    return f"leaves {joint.name} without a stop"
         return ""
+
+    def hinges(self, name: str) -> list[Array]:
+        """The corners (8, 3) of all that a pocket in a body has to leave: knuckles, feet, and ridges of latches."""
+        boxes = [(low, high) for base, _, low, high in self._feet if base == name]
+        boxes += [(j.axis.min(0) - j.radius, j.axis.max(0) + j.radius) for j in self._hinges_of(name)]
+        boxes += self._ridges.get(name, [])
+        return [box_corners(low, high) for low, high in boxes]
 
     def latch(self, stop: Stop) -> Latch | None:
         """Makes the latch of a stop that is made, where it holds and lets go."""
@@ -199,6 +224,7 @@ class Trial:
             self._change(stop.body, Change(False, stop.detent.slit))
             self._change(stop.other, Change(True, stop.detent.ridges))
             self.gives.setdefault(stop.body, []).append(printed(stop.detent.pressed))
+            self._ridges.setdefault(stop.other, []).append(solids.bounds(printed(stop.detent.ridges)))
         return found
 
     def _halves(self, joint: str, fitted: Fitted | None = None) -> tuple[Solid, Solid]:
@@ -206,12 +232,23 @@ class Trial:
         first, second = self._parts[joint]
         return made[first], made[second]
 
-    def _with(self, stop: Stop) -> dict[str, Solid] | None:
-        """The two bodies with a stop; None where one of them would fall apart."""
+    def _pocket(self, stop: Stop, name: str) -> Shape | None:
+        """What is to be cut from a third body for a stop to pass; None where there is no room for it."""
+        other, gap = self.made[name], self.assembly.solution.thickness.gap
+        taken = self._passage.taken(stop.body, printed(stop.added), name, other)
+        return pocket(other, self._planes[name], taken, gap, self.hinges(name)) if taken else None
+
+    def _hinges_of(self, name: str) -> list[Joint]:
+        return [joint for joint in self.assembly.joints if name in joint.parts]
+
+    def _with(self, stop: Stop, pockets: Mapping[str, Shape]) -> dict[str, Solid] | None:
+        """The bodies with a stop; None where one of them would fall apart."""
         body = solids.union([self.made[stop.body], printed(stop.added)])
         other = self.made[stop.other]
+        other = other if stop.lip is None else solids.union([other, printed(stop.lip)])
         other = other if stop.cut is None else solids.cut(other, [printed(stop.cut)])
-        changed = {name: solids.tidied(solid) for name, solid in ((stop.body, body), (stop.other, other))}
+        bored = {name: solids.cut(self.made[name], [printed(hole)]) for name, hole in pockets.items()}
+        changed = {name: solids.tidied(solid) for name, solid in {stop.body: body, stop.other: other, **bored}.items()}
         return changed if all(solids.pieces(s) == 1 and solids.stays_closed(s) for s in changed.values()) else None
 
     def _thin_sides(self, name: str, solid: Solid, near: tuple[Array, Array] | None = None) -> int:
@@ -221,6 +258,16 @@ class Trial:
         """Whether nothing meets the material of a stop along the whole fold."""
         added = printed(stop.added)
         return all(self._is_apart(stop.body, added, name, solid) for name, solid in others.items())
+
+    def _has_room_for_lip(self, stop: Stop, lip: Shape) -> bool:
+        """Whether a lip adds to its base, and nothing meets what of it is left beside its slot along the whole fold."""
+        holes = [] if stop.cut is None else [printed(stop.cut)]
+        added = solids.cut(printed(lip), [self.made[stop.other], *holes])
+        if added.is_empty() or not self._fits(stop.other, added):
+            return False
+        return all(
+            self._is_apart(stop.other, added, name, other) for name, other in self.made.items() if name != stop.other
+        )
 
     def _is_taken(self, stop: Stop) -> bool:
         """Whether what is cut away is, or holds, something else."""

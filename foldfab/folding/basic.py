@@ -99,8 +99,9 @@ def too_narrow(
     first, last = np.array(many).T
     start = width * (first / steps - 0.5) + np.where(first > 0, thickness.gap / 2, 0.0)
     end = width * (last / steps - 0.5) - np.where(last < steps, thickness.gap / 2, 0.0)
-    found: Bools = np.minimum(end, span[:, 1:]) - np.maximum(start, span[:, :1]) < least[:, None]
-    return found & (np.array(many) != (0, steps)).any(1)
+    is_narrow = np.minimum(end, span[:, 1:]) - np.maximum(start, span[:, :1]) < least[:, None]
+    found: Bools = is_narrow & np.array([one != (0, steps) for one in many])
+    return found
 
 
 def chain(site: Site, variant: Variant, span: Array, thickness: Thickness) -> Chain | None:

@@ -72,7 +72,7 @@ def _regions_met(
 def windows_table(windows: tuple[tuple[int, int], ...], steps: int) -> Array:
     """(windows, N_s) 1 where a window holds a piece."""
     place = np.arange(steps)
-    found = np.array([(place >= a) & (place < b) for a, b in windows], dtype=np.float32)
+    found: Array = np.array([(place >= a) & (place < b) for a, b in windows]).astype(np.float32)
     found.setflags(write=False)
     return found
 

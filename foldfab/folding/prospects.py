@@ -156,11 +156,11 @@ def _close(problem: Problem, around: Surroundings, many: list[Lane]) -> list[Lan
     reach = [x.reach for x in many if x.reach is not None]
     if len(reach) < len(many) or not many:
         return many
-    near = ~_own_plates(problem, many, around)
+    near: Bools = ~_own_plates(problem, many, around)
     low, high = (np.array([corners[end] for corners in reach])[:, around.group] for end in (0, 1))
     for axis in range(3):
         near &= (low[..., axis] <= around.corners[1][:, axis]) & (high[..., axis] >= around.corners[0][:, axis])
-    return [x for x, is_close in zip(many, near.any(1).tolist(), strict=True) if is_close]
+    return [x for x, found in zip(many, near, strict=True) if found.any()]
 
 
 def _never_met(problem: Problem, own: Repertoire, around: Surroundings, passed: Bools | None) -> Bools:

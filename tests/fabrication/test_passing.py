@@ -42,3 +42,12 @@ def test_what_is_met_at_an_instant_alone(passage: Callable[[Array], Passage]) ->
 def test_bodies_that_do_not_move_against_each_other_never_meet(passage: Callable[[Array], Passage]) -> None:
     beside = solids.box((50.3, -5, 60), (55, 5, 62))
     assert not passage(ENDS).meets("roof", PIECE, "roof", beside, above=0.005)
+
+
+def test_what_a_piece_takes_from_another_body_at_the_instants(passage: Callable[[Array], Passage]) -> None:
+    there = solids.moved(PIECE, passage(ENDS).poses["roof"][1])
+    low, high = solids.bounds(there)
+    below = solids.box(low - [5, 5, 5], high - [0, 0, 1])
+    (taken,) = passage(ENDS).taken("roof", PIECE, "ground", below)
+    assert taken.volume() == pytest.approx(PIECE.volume() / 2)
+    assert passage(ENDS).taken("roof", PIECE, "ground", solids.box(low - 9, low - 1)) == []

@@ -97,8 +97,7 @@ def test_what_stands_in_pockets_prints_in_every_posture(
     write(made, tmp_path / "pair")
     report = check(tmp_path / "pair")
     assert report.ok, report
-    # Open, a tongue has less of the plate to meet; in the others heels have the room that they turn in.
-    assert [f.code for f in made.findings].count("stop") == (posture == "open")
+    assert all(finding.code != "stop" for finding in made.findings)
     notes = json.loads((tmp_path / "pair" / "sheet.json").read_text(encoding="utf-8"))["findings"]
     told = "ground has a pocket 1.4 mm deep for three so that the stack closes flat"
     assert told in [note["text"] for note in notes]

@@ -29,7 +29,7 @@ SAVING = 0.01
 """By how much the space saving may differ from the stated one."""
 FIT_MM = 0.01
 """By how much the gap of a seam may be off."""
-PULL_FITS = 4.0
+PULL_FITS = 3.0
 """Pieces must meet before they are pulled so many fits apart."""
 STILL_MM = 2e-3
 """By how much two pieces of a part may seem to move against each other by rounding."""

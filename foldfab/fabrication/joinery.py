@@ -27,7 +27,7 @@ from foldfab.folding.model import Chain, FoldSolution
 from foldfab.geometry.arrays import Array
 from foldfab.recipe.model import Posture
 
-PULL_FITS = 4.0
+PULL_FITS = 3.0
 """Pieces must meet before they are pulled so many fits apart."""
 ROUNDING = 0.01
 """By how much a gap may be off, mm."""

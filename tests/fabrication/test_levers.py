@@ -119,8 +119,9 @@ def test_an_arm_lies_where_a_slot_would_cut_the_foot_of_another_hinge(
     solution: Callable[..., FoldSolution], board_at: Callable[..., Part], wall_at: Callable[..., Part]
 ) -> None:
     boards = board_at("low", 0), board_at("middle", 64), board_at("high", 128)
-    narrow = wall_at("b", 0, 64, 128, depth=15)
-    beside, clear = (build(solution((*boards, wall_at("a", x, 0, 64), narrow)), "open").joints for x in (-4.0, 4.0))
+    wide = wall_at("a", -4, 0, 64)
+    narrow = (wall_at("b", x, 64, 128, depth=15) for x in (0.0, -8.0))
+    beside, clear = (build(solution((*boards, wide, wall)), "open").joints for wall in narrow)
     assert {j.name: j.stops for j in beside}["middle~b"] == ("arm",)
     assert {j.name: j.stops for j in clear}["middle~b"] == ("tongue",)
     assert all(j.stop_deg[0] is not None and j.stop_deg[0] <= PAST for j in (*beside, *clear))

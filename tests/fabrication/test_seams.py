@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from foldfab.fabrication import solids
+from foldfab.fabrication.inspect import HELD
+from foldfab.fabrication.joinery import PULL_FITS
 from foldfab.fabrication.seams import LEAST_SPLICE, MOST_REACH, fit_of, parted, tongues
 from foldfab.fabrication.solids import Solid
 
@@ -60,9 +62,10 @@ def test_the_gap_is_nowhere_wider(width: float) -> None:
 
 
 @given(st.floats(LEAST_SPLICE, 200.0), st.floats(0.1, 0.5))
+@example(9.0, 0.5)
 def test_pieces_cannot_be_pulled_apart(width: float, fit: float) -> None:
     _, one, other = pieces(width, fit)
-    assert solids.overlap(one, other.translate((0, 0, 4 * fit))) > 0.02
+    assert solids.overlap(one, other.translate((0, 0, PULL_FITS * fit))) > HELD
 
 
 def test_the_fit_is_tighter_than_a_hinge_and_no_tighter_than_printers_can() -> None:

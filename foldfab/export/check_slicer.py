@@ -42,7 +42,8 @@ def check_slicer(folder: Path, stated: Stated, slicer: str) -> list[Row]:
 def _check_file(folder: Path, name: str, stated: Stated, slicer: str) -> list[Row]:
     file = inside(folder, name)
     x, y, z = stated.bed.tolist()
-    one, printer = read_threemf(file), Printer("", (x, y, z))
+    one = read_threemf(file, is_loose=stated.posture == "plate")
+    printer = Printer("", (x, y, z))
     rows: list[Row] = []
     try:
         bare, held = (run(file, printer, support=wanted, slicer=slicer) for wanted in (False, True))

@@ -60,6 +60,15 @@ def test_a_good_print_passes(original: Path, prusa: str) -> None:
     assert found["apart"].facts["hinges"] == 4
 
 
+def test_loose_parts_are_sliced_plate_by_plate(make: Callable[..., Assembly], tmp_path: Path, prusa: str) -> None:
+    loose = make(posture="plate")
+    write(loose, tmp_path / "stool")
+    found = rows(tmp_path / "stool", prusa)
+    assert tuple(found) == CODES and all(row.ok for row in found.values()), found
+    assert found["slicer"].facts["bodies"] == len(loose.bodies)
+    assert found["apart"].text == "no hinge is printed in place"
+
+
 def test_knuckles_that_nearly_touch_are_found_fused(written: Path, assembly: Assembly, prusa: str) -> None:
     # Knuckles interleave along y with a gap of 0.3 mm: 0.25 of it are taken away on one side.
     rewrite(written, assembly, lambda shell: moved(shell, "flap", (0, 0.25, 0)))

@@ -9,7 +9,7 @@ import numpy as np
 from foldfab.geometry.arrays import Array, Indices
 from foldfab.geometry.flat_triangles import heights as heights_of
 
-FLAT_MM = 5e-6
+DEGENERATE_MM = 5e-6
 """A triangle that is lower than this is degenerate: half a step of the grid that files are written on."""
 SLIVER_MM = 1e-4
 """One that is lower than this has an area, but none that a slicer would see."""
@@ -49,8 +49,8 @@ def faults(vertices: Array, faces: Indices) -> Faults:
         open_edges=int(np.sum(count == 1)),
         nonmanifold_edges=int(np.sum(count > 2)),
         backwards_edges=len(ends) if is_sound and volume(vertices, faces) <= 0 else backwards,
-        degenerate_facets=int(np.sum(heights < FLAT_MM)),
-        slivers=int(np.sum((heights >= FLAT_MM) & (heights < SLIVER_MM))),
+        degenerate_facets=int(np.sum(heights < DEGENERATE_MM)),
+        slivers=int(np.sum((heights >= DEGENERATE_MM) & (heights < SLIVER_MM))),
     )
 
 

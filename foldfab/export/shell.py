@@ -11,6 +11,7 @@ from typing import Literal
 
 import numpy as np
 
+from foldfab.export.faults import DEGENERATE_MM
 from foldfab.export.frames import to_sheet
 from foldfab.fabrication.model import Assembly, Body
 from foldfab.geometry.arrays import Array, Bools, Indices
@@ -48,14 +49,15 @@ def snapped(body: Body, points: Array) -> Shell:
     """The body with its vertices at (n, 3) `points`, rounded to the grid; triangles without an area are taken out."""
     is_hinge = np.zeros(len(body.faces), dtype=bool)
     is_hinge[body.hinge_faces] = True
-    found: list[tuple[int, Shell]] = []
+    found: list[tuple[tuple[int, int], Shell]] = []
     for short in (0.0, *SHORT_MM):
         vertices, faces, is_kept = _welded(_rounded(_drawn_together(points, body.faces, short)), body.faces)
         if is_closed(faces):
-            whole = flipped(vertices, faces, FLAT_MM)
-            flat = int(np.sum(heights(vertices[whole]) < FLAT_MM))
-            found.append((flat, Shell(body.name, body.kind, vertices, whole, is_hinge[is_kept])))
-            if not flat:
+            # Flipping may make what is nearly flat quite flat.
+            for whole in (flipped(vertices, faces, FLAT_MM), faces):
+                lost, flat = (int(np.sum(heights(vertices[whole]) < low)) for low in (DEGENERATE_MM, FLAT_MM))
+                found.append(((lost, flat), Shell(body.name, body.kind, vertices, whole, is_hinge[is_kept])))
+            if (0, 0) in (worth for worth, _ in found):
                 break
     if not found:
         # Welding made two sheets of the body touch along an edge: indices keep them apart.

@@ -5,9 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
+from foldfab.export.faults import DEGENERATE_MM
 from foldfab.export.shell import bounds, sheet_shells, snapped
 from foldfab.fabrication.model import Assembly, Body
 from foldfab.geometry.closed import is_closed
+from foldfab.geometry.flat_triangles import heights
 
 
 def _body(vertices: Sequence[Sequence[float]], faces: list[list[int]]) -> Body:
@@ -27,6 +29,18 @@ def test_collapsed_triangles_are_dropped_together(needle: Body) -> None:
     shell = snapped(needle, needle.vertices)
     assert len(shell.vertices) == 4 and len(shell.faces) == 4 and is_closed(shell.faces)
     assert len(shell.is_hinge) == 4 and not shell.is_hinge.any()
+
+
+def test_what_is_nearly_flat_is_not_made_quite_flat() -> None:
+    """Beside a row of needles lies another that ends on their line: flipped, it would have no area left."""
+    ends = np.array([[0, 0], [5.94, 0.0246], [5.755, 0.0246], [5.7475, 0.0246], [5.74, 0.0246]])
+    low, high = (np.insert(ends, 1, depth, axis=1) for depth in (0.0, 4.0))
+    fan = np.array([[0, k, k + 1] for k in range(1, 4)])
+    walls = [[[k, k + 5, j], [j, k + 5, j + 5]] for k, j in zip(range(5), [1, 2, 3, 4, 0], strict=True)]
+    faces = np.concatenate([fan, fan[:, ::-1] + 5, np.array(walls).reshape(-1, 3)])
+    body = _body(np.concatenate([low, high]).tolist(), faces.tolist())
+    made = snapped(body, body.vertices)
+    assert is_closed(made.faces) and heights(made.vertices[made.faces]).min() > DEGENERATE_MM
 
 
 def test_sheets_that_would_touch_stay_apart_by_index() -> None:

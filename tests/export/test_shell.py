@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from foldfab.export.faults import DEGENERATE_MM
-from foldfab.export.shell import bounds, sheet_shells, snapped
+from foldfab.export.shell import FLAT_MM, bounds, sheet_shells, snapped
 from foldfab.fabrication.model import Assembly, Body
+from foldfab.geometry import flat_triangles
 from foldfab.geometry.closed import is_closed
-from foldfab.geometry.flat_triangles import heights
+from foldfab.geometry.flat_triangles import flipped, heights
 
 
 def _body(vertices: Sequence[Sequence[float]], faces: list[list[int]]) -> Body:
@@ -31,14 +32,16 @@ def test_collapsed_triangles_are_dropped_together(needle: Body) -> None:
     assert len(shell.is_hinge) == 4 and not shell.is_hinge.any()
 
 
-def test_what_is_nearly_flat_is_not_made_quite_flat() -> None:
-    """Beside a row of needles lies another that ends on their line: flipped, it would have no area left."""
+def test_what_is_nearly_flat_is_not_made_quite_flat(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Beside a row of needles lies another that ends on their line: flipped, one has no area left."""
+    monkeypatch.setattr(flat_triangles, "ROUNDS", 1)
     ends = np.array([[0, 0], [5.94, 0.0246], [5.755, 0.0246], [5.7475, 0.0246], [5.74, 0.0246]])
     low, high = (np.insert(ends, 1, depth, axis=1) for depth in (0.0, 4.0))
     fan = np.array([[0, k, k + 1] for k in range(1, 4)])
     walls = [[[k, k + 5, j], [j, k + 5, j + 5]] for k, j in zip(range(5), [1, 2, 3, 4, 0], strict=True)]
     faces = np.concatenate([fan, fan[:, ::-1] + 5, np.array(walls).reshape(-1, 3)])
     body = _body(np.concatenate([low, high]).tolist(), faces.tolist())
+    assert heights(body.vertices[flipped(body.vertices, body.faces, FLAT_MM)]).min() < DEGENERATE_MM
     made = snapped(body, body.vertices)
     assert is_closed(made.faces) and heights(made.vertices[made.faces]).min() > DEGENERATE_MM
 

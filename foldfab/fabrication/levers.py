@@ -6,6 +6,7 @@ Printed open, faces are a clearance g apart, and a stop has to be some 20 g away
   the layer of its own panel, so that the stack stays as low as it is. Where the base is too thin it leans back until it
   is long enough, and stands up out of that layer once it is folded; where the base ends too early, it gets a lip.
 - *arm*: the same, flat on the base behind the panel, where no slot may be.
+- *post*: the base's own, beside a knuckle and up behind the panel, where the base is too narrow for either.
 
 Printed otherwise they may be closer: a *heel* is a squared knuckle. At the folded end, where the base ends too early, a
 *rest* reaches out below the panel.
@@ -22,7 +23,7 @@ from foldfab.fabrication.hinges import Mark
 from foldfab.fabrication.latches import detent
 from foldfab.fabrication.mounts import NARROWEST, WIDEST, Mount, Stop, leaning, leant, spots, within
 from foldfab.fabrication.relief import STEEP
-from foldfab.fabrication.shapes import Shape, box, cut, placed, prism
+from foldfab.fabrication.shapes import Shape, box, cut, placed, prism, union
 from foldfab.fabrication.walls import LINE
 from foldfab.geometry.arrays import Array
 
@@ -46,6 +47,10 @@ FAR = 1000.0
 """Beyond everything, mm."""
 EDGE = 2 * LINE
 """A wall thinner than this between a slot and an edge of its base may be cut away, mm."""
+POST = 2.0
+"""Thickness of a post, mm: what turns the panel on bends it across its layers."""
+ROOTED = 0.2
+"""How far a post reaches into a foot, mm: less than there is beside a socket."""
 
 _LYING = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 """Turns a prism, drawn along y, so that it is drawn along -z and its outline lies in x and y."""
@@ -63,6 +68,7 @@ def levers(mount: Mount, *, is_latched: bool) -> Iterator[Stop]:
     yield from _arms(mount)
     if not is_long:
         yield from _tongues(mount, mount.lean)
+    yield from _posts(mount)
 
 
 def heels(mount: Mount) -> Iterator[Stop]:
@@ -163,6 +169,17 @@ def _arms(mount: Mount) -> Iterator[Stop]:
     for low, high in within(mount.marks.follower, mount.thickness.gap):
         arm = box((-_lever(mount), low, under), (0.0, high, under + NARROWEST))
         yield Stop(mount.joint, "arm", False, mount.panel, arm, mount.base)
+
+
+def _posts(mount: Mount) -> Iterator[Stop]:
+    half, behind = mount.thickness.panel / 2, CLOSE * mount.thickness.gap + mount.thickness.panel / 2
+    for low, high in sorted(mount.marks.carrier, key=lambda mark: (round(mark[0] - mark[1], 6), mark)):
+        width = min(high - low, WIDEST)
+        # At the outer end of its knuckle, where it is furthest from those of the panel.
+        a = low if low == mount.marks.carrier[0][0] else high - width
+        post = leant(box((-behind - POST, a, -half), (-behind, a + width, _lever(mount))), mount.lean)
+        root = box((-behind - POST, a, -mount.thickness.axis_height), (ROOTED - half, a + width, 0.0))
+        yield Stop(mount.joint, "post", False, mount.base, union([post, root]), mount.panel)
 
 
 def _below(depth: float) -> Shape:

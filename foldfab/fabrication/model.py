@@ -79,7 +79,7 @@ class Joint:
     stop_deg: tuple[float | None, float | None] = (None, None)
     """How far past its open and its folded end it turns before its halves meet; None where they never do."""
     stops: tuple[str, ...] = ()
-    """What was added to stop it: `tongue`, `arm`, `lap`, `heel`, `butt`, `rest`."""
+    """What was added to stop it: `tongue`, `arm`, `post`, `lap`, `heel`, `butt`, `rest`."""
     latch: Latch | None = None
     """What holds it open, where that was asked for."""
     seam: Seam | None = None

@@ -31,6 +31,8 @@ from foldfab.geometry.arrays import Array
 
 WEB = 1.5
 """How far a lap reaches into its own panel, mm."""
+LEFT = 0.6
+"""What is left of a panel beyond a recess, mm: a line and some."""
 
 
 def stops(solution: FoldSolution, chain: Chain, hinge: int, *, in_open: bool) -> Iterator[Stop]:
@@ -96,7 +98,7 @@ def _free(chain: Chain, hinge: int, above: bool, thickness: Thickness) -> float:
     at_base = panel == 0 if above else panel == len(chain.lengths) - 1 and chain.far is not None
     at_tip = not above and panel == len(chain.lengths) - 1 and chain.far is None
     taken = 0.0 if at_tip else thickness.foot_room if at_base else thickness.knuckle_room
-    return max(float(chain.lengths[panel]) - taken - thickness.gap - 1.0, 0.5)
+    return max(float(chain.lengths[panel]) - taken - thickness.gap - LEFT, 0.5)
 
 
 def _straight(chain: Chain, hinge: int) -> tuple[Array, Array]:

@@ -127,6 +127,30 @@ def test_an_arm_lies_where_a_slot_would_cut_the_foot_of_another_hinge(
     assert all(j.stop_deg[0] is not None and j.stop_deg[0] <= PAST for j in (*beside, *clear))
 
 
+def test_a_post_stands_behind_a_leg_on_a_bar_that_others_need_whole(
+    solution: Callable[..., FoldSolution], board_at: Callable[..., Part], wall_at: Callable[..., Part]
+) -> None:
+    legs = [wall_at(f"{k}", 0, low, low + 64, depth=8) for k, low in enumerate((0, 64, 128))]
+    bars = [board_at(f"bar {k}", 64 * k, 9, 80) for k in (1, 2)]
+    made = build(solution((board_at("low", 0), *bars, *legs, board_at("high", 192))), "open")
+    on_bars = [joint for joint in made.joints if any(part.startswith("bar") for part in joint.parts)]
+    assert len(on_bars) == 4 and sum("post" in joint.stops for joint in on_bars) >= 2
+    assert all(j.stop_deg[0] is not None and j.stop_deg[0] <= PAST for j in made.joints)
+
+
+@pytest.mark.parametrize("lean", [-30.0, 0.0, 30.0])
+def test_a_post_is_one_piece_a_clearance_behind_its_panel(lean: float, hinge_at: Callable[..., Mount]) -> None:
+    here = hinge_at("t_scaffold", 4.0, lean)
+    posts = [printed(stop.added) for stop in levers(here, is_latched=False) if stop.kind == "post"]
+    assert len(posts) == len(here.marks.carrier)
+    for post in posts:
+        x, z = solids.mesh(post)[0][:, [0, 2]].T
+        above = x * np.sin(here.lean) + z * np.cos(here.lean) > 2.0
+        behind = (x * np.cos(here.lean) - z * np.sin(here.lean))[above]
+        assert solids.pieces(post) == 1 and above.any()
+        assert behind.max() == pytest.approx(-2.285)
+
+
 @pytest.mark.parametrize("lean", [-60.0, -30.0, -12.0, 0.0, 12.0])
 def test_a_heel_stays_within_the_layer_of_its_panel(lean: float, hinge_at: Callable[..., Mount]) -> None:
     here = hinge_at("t_scaffold", 3.0, lean)

@@ -83,7 +83,8 @@ def _by_thickness(recipe: Recipe, direction: Array) -> tuple[list[FoldSolution],
         if panel in found and not _gone(found[panel]):
             break
     for gone, panel in sorted((gone, -panel) for panel, gone in put_off.items()):
-        least, best = min(((_gone(s), -k) for k, s in found.items()), default=(len(recipe.parts), 0.0))
+        every = max(gone, len(recipe.parts))
+        least, best = min(((_gone(s), -k) for k, s in found.items()), default=(every, 0.0))
         # What loses as much is better with thicker plates.
         if (gone, panel) < (least, best):
             attempt(-panel, least, least)

@@ -19,7 +19,7 @@ from foldfab.folding.model import FoldSolution
 from foldfab.folding.work import Work
 from foldfab.geometry.arrays import Array
 from foldfab.pipeline import load
-from foldfab.recipe.model import FoldOptions, Part, Posture, PrintOptions, Recipe
+from foldfab.recipe.model import FoldOptions, Part, Pattern, Posture, PrintOptions, Recipe
 from foldfab.recipe.printers import DEFAULT_PRINTER
 
 DOWN = np.array([0.0, 0.0, -1.0])
@@ -138,6 +138,19 @@ def test_all_thicknesses_share_the_time_limit(
     with pytest.raises(FoldingError, match="no"):
         along(low_table(40.0), DOWN)
     assert limits == pytest.approx([2.0, 0.6, 0.5])
+
+
+def test_more_patches_may_have_to_go_than_there_are_parts(
+    box: Callable[..., Part], low_table: Callable[..., Recipe]
+) -> None:
+    """Shelves cut each wall into three."""
+    shelves = [box(f"shelf{k}", (0, 0, 40.0 * k), (160, 60, 2)) for k in range(4)]
+    walls = [box(f"wall{k}", (40.0 * k - 60, 0, 60), (2, 60, 122)) for k in range(4)]
+    gone = [replace(wall, pin=Pattern(mechanism="deleted")) for wall in walls[1:]]
+    recipe = replace(low_table(40.0), parts=(*shelves, walls[0], *gone))
+    solution = along(recipe, DOWN)
+    assert sum(m.is_deleted for m in solution.modifications) == 9 > len(recipe.parts)
+    assert solution.thickness.panel == 4.0
 
 
 @pytest.mark.parametrize("posture", ["open", "folded", "edge"])

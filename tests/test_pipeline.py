@@ -103,7 +103,7 @@ def test_a_print_longer_across_is_told_the_scale_at_which_it_fits_turned(tmp_pat
         "parts": [{"name": n, "box": {"center": at, "size": size}} for n, (at, size) in boxes.items()],
     }  # fmt: skip
     (tmp_path / "long.json").write_text(json.dumps(recipe), encoding="utf-8")
-    with pytest.raises(FabricationError, match=r"--scale fit, at scale 0\.8\d+ or smaller") as told:
+    with pytest.raises(FabricationError, match=r"at scale 0\.8\d+ or smaller, with --scale fit") as told:
         pipeline.fabricate(foldfab.foldabilize(foldfab.load(tmp_path / "long.json")))
     found = re.search(r"at scale ([\d.]+)", str(told.value))
     assert found

@@ -113,8 +113,8 @@ def fits(assembly: Assembly) -> list[Finding]:
     share, (name, size) = min(zip(shares, too_large, strict=True), key=lambda row: row[0])
     told = " x ".join(f"{v:.1f}" for v in size)
     least = assembly.solution.scaffold.scale * min(share, 0.999)
-    text = f"{assembly.posture} {name} is {told} mm and does not fit the {printer.name}; print at --scale fit, "
-    text += f"at scale {least:.4g} or smaller{_or_in_parts(assembly)}"
+    text = f"{assembly.posture} {name} is {told} mm and does not fit the {printer.name}; "
+    text += f"print at scale {least:.4g} or smaller, with --scale fit{_or_in_parts(assembly)}"
     return [Finding("bed", text, is_fatal=True)]
 
 

@@ -83,7 +83,8 @@ def _by_thickness(recipe: Recipe, direction: Array) -> tuple[list[FoldSolution],
         if panel in found and not _gone(found[panel]):
             break
     for gone, panel in sorted((gone, -panel) for panel, gone in put_off.items()):
-        least, best = min(((_gone(s), -k) for k, s in found.items()), default=(len(recipe.parts), 0.0))
+        every = max(gone, len(recipe.parts))
+        least, best = min(((_gone(s), -k) for k, s in found.items()), default=(every, 0.0))
         # What loses as much is better with thicker plates.
         if (gone, panel) < (least, best):
             attempt(-panel, least, least)
@@ -183,22 +184,19 @@ def _has_scaffold(recipe: Recipe, axis: tuple[int, int, int], scale: float) -> b
 def _fitting_scale(recipe: Recipe, direction: Array, posture: Posture) -> float:
     """About the largest scale at which the furniture fits the bed in its posture, either way round."""
     from foldfab.fabrication.room import largest_scale
+    from foldfab.scaffold.frame import canonical, straight
 
-    size = _size(recipe)
     thickest = max(recipe.print.thickness, recipe.print.base_thickness or 0.0)
     bed = np.array(recipe.print.printer.build_volume) - MARGIN_THICKNESSES * thickest
     if (bed <= 0).any():
         raise FoldingError(f"the {recipe.print.printer.name} is too small for plates of {thickest:g} mm")
-    if posture != "open":
-        from foldfab.geometry.rotation import upright
-
-        size = np.abs(upright(direction)) @ size
-    return largest_scale(recipe, posture, size, bed)
+    turn = straight(recipe) if posture == "open" else canonical(recipe, direction)
+    return largest_scale(recipe, posture, _size(recipe, turn), bed)
 
 
-def _size(recipe: Recipe) -> Array:
-    """(3,) true size of the furniture's bounds, mm."""
-    reach = np.array([np.abs(p.axes.T) @ p.size / 2 for p in recipe.parts])
-    center = np.array([p.center for p in recipe.parts])
+def _size(recipe: Recipe, turn: Array) -> Array:
+    """(3,) true size of the furniture's bounds in axes turned by `turn` (3, 3), mm."""
+    reach = np.array([np.abs(turn @ p.axes.T) @ p.size / 2 for p in recipe.parts])
+    center = np.array([turn @ p.center for p in recipe.parts])
     size: Array = (center + reach).max(0) - (center - reach).min(0)
     return size

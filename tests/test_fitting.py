@@ -11,11 +11,15 @@ import pytest
 
 from foldfab import fitting
 from foldfab.errors import FoldingError, LossError
+from foldfab.export.bed import on_bed
+from foldfab.fabrication.build import build
+from foldfab.fabrication.inspect import printed_extent
 from foldfab.fitting import along
 from foldfab.folding.model import FoldSolution
 from foldfab.folding.work import Work
 from foldfab.geometry.arrays import Array
-from foldfab.recipe.model import FoldOptions, Part, PrintOptions, Recipe
+from foldfab.pipeline import load
+from foldfab.recipe.model import FoldOptions, Part, Pattern, Posture, PrintOptions, Recipe
 from foldfab.recipe.printers import DEFAULT_PRINTER
 
 DOWN = np.array([0.0, 0.0, -1.0])
@@ -134,3 +138,30 @@ def test_all_thicknesses_share_the_time_limit(
     with pytest.raises(FoldingError, match="no"):
         along(low_table(40.0), DOWN)
     assert limits == pytest.approx([2.0, 0.6, 0.5])
+
+
+def test_more_patches_may_have_to_go_than_there_are_parts(
+    box: Callable[..., Part], low_table: Callable[..., Recipe]
+) -> None:
+    """Shelves cut each wall into three."""
+    shelves = [box(f"shelf{k}", (0, 0, 40.0 * k), (160, 60, 2)) for k in range(4)]
+    walls = [box(f"wall{k}", (40.0 * k - 60, 0, 60), (2, 60, 122)) for k in range(4)]
+    gone = [replace(wall, pin=Pattern(mechanism="deleted")) for wall in walls[1:]]
+    recipe = replace(low_table(40.0), parts=(*shelves, walls[0], *gone))
+    solution = along(recipe, DOWN)
+    assert sum(m.is_deleted for m in solution.modifications) == 9 > len(recipe.parts)
+    assert solution.thickness.panel == 4.0
+
+
+@pytest.mark.parametrize("posture", ["open", "folded", "edge"])
+def test_furniture_that_stands_askew_in_its_file_is_printed_as_large(posture: Posture) -> None:
+    recipe = load("bench-legs", posture=posture, scale="fit")
+    sin, cos = np.sin(np.radians(20.0)), np.cos(np.radians(20.0))
+    turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    parts = tuple(replace(p, center=turn @ p.center, axes=p.axes @ turn.T) for p in recipe.parts)
+    still, askew = (along(one, DOWN) for one in (recipe, replace(recipe, parts=parts)))
+    assert askew.scaffold.scale == pytest.approx(still.scaffold.scale)
+    extents = [printed_extent(build(solution, posture)) for solution in (still, askew)]
+    assert extents[1] == pytest.approx(extents[0], abs=0.01)
+    heaps = [np.vstack([shell.vertices for shell in on_bed(build(s, posture))]) for s in (still, askew)]
+    assert np.ptp(heaps[1], axis=0) == pytest.approx(np.ptp(heaps[0], axis=0), abs=0.01)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -92,6 +93,22 @@ def test_a_scale_of_ones_own_is_kept(tmp_path: Path) -> None:
 def test_a_scale_that_does_not_fit_says_which_would(tmp_path: Path) -> None:
     with pytest.raises(FabricationError, match=r"at scale 0\.\d+ or smaller"):
         fabricated(tmp_path, direction="-z", print={"scale": 0.5})
+
+
+def test_a_print_longer_across_is_told_the_scale_at_which_it_fits_turned(tmp_path: Path) -> None:
+    """The bed is longer along x, the furniture along y."""
+    boxes = {"floor": ([0, 0, 0], [80, 300, 4]), "top": ([0, 0, 60], [80, 300, 4]), "wall": ([0, 0, 30], [4, 280, 56])}
+    recipe = {
+        "direction": "-z", "print": {"scale": 1.0},
+        "parts": [{"name": n, "box": {"center": at, "size": size}} for n, (at, size) in boxes.items()],
+    }  # fmt: skip
+    (tmp_path / "long.json").write_text(json.dumps(recipe), encoding="utf-8")
+    with pytest.raises(FabricationError, match=r"at scale 0\.8\d+ or smaller, with --scale fit") as told:
+        pipeline.fabricate(foldfab.foldabilize(foldfab.load(tmp_path / "long.json")))
+    found = re.search(r"at scale ([\d.]+)", str(told.value))
+    assert found
+    fitting = foldfab.load(tmp_path / "long.json", scale=found[1])
+    assert pipeline.fabricate(foldfab.foldabilize(fitting)).solution.scaffold.scale == float(found[1])
 
 
 def test_auto_takes_the_direction_with_the_best_score(tmp_path: Path) -> None:

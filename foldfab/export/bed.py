@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from foldfab.export.frames import moved, to_sheet
+from foldfab.export.frames import moved
 from foldfab.export.packing import packed
 from foldfab.export.shell import GRID_DIGITS, Shell, bounds, snapped
 from foldfab.fabrication.lying import lying
@@ -73,10 +73,10 @@ def _printed(assembly: Assembly) -> tuple[Body, ...]:
 
 
 def _postured(assembly: Assembly, bodies: tuple[Body, ...]) -> list[Array]:
-    if assembly.posture == "open":
-        return [to_sheet(assembly, body.vertices) for body in bodies]
-    # Folded flat, the canonical frame's floor is the bed: d = -Z.
     turn = printed_turn(assembly)
+    if assembly.posture == "open":
+        return [body.vertices @ turn.T for body in bodies]
+    # Folded flat, the canonical frame's floor is the bed: d = -Z.
     return [moved(body.vertices, assembly.poses[body.name][-1]) @ turn.T for body in bodies]
 
 

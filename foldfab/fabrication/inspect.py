@@ -109,13 +109,12 @@ def fits(assembly: Assembly) -> list[Finding]:
     too_large = [(n, s) for n, s in _sizes(assembly) if not ((s <= bed).all() or (s[[1, 0, 2]] <= bed).all())]
     if not too_large:
         return []
-    name, size = max(too_large, key=lambda row: float((row[1] / bed).max()))
+    shares = [max(float((bed / s).min()), float((bed / s[[1, 0, 2]]).min())) for _, s in too_large]
+    share, (name, size) = min(zip(shares, too_large, strict=True), key=lambda row: row[0])
     told = " x ".join(f"{v:.1f}" for v in size)
-    share = min(float((bed / size).min()), 0.999)
-    text = (
-        f"{assembly.posture} {name} is {told} mm and does not fit the {printer.name}; "
-        f"print at scale {assembly.solution.scaffold.scale * share:.4g} or smaller{_or_in_parts(assembly)}"
-    )
+    least = assembly.solution.scaffold.scale * min(share, 0.999)
+    text = f"{assembly.posture} {name} is {told} mm and does not fit the {printer.name}; "
+    text += f"print at scale {least:.4g} or smaller, with --scale fit{_or_in_parts(assembly)}"
     return [Finding("bed", text, is_fatal=True)]
 
 

@@ -1,6 +1,6 @@
 """How a print stands on the bed, by posture: the turn from the canonical frame, and which end is up.
 
-On edge, all hinge axes are vertical, so that every gap is a sideways gap; this needs axes that are all parallel. Of the
+Open, it is turned about z so that it takes least of the bed. On edge, all hinge axes are vertical, so that every gap is a sideways gap; this needs axes that are all parallel. Of the
 two ends, the one that leaves fewer bodies in the air is down.
 """
 
@@ -16,6 +16,8 @@ from foldfab.folding.model import Chain, FoldSolution
 from foldfab.geometry.arrays import Array
 from foldfab.geometry.rotation import cross
 from foldfab.recipe.model import Posture
+from foldfab.scaffold.frame import straight
+from foldfab.scaffold.model import Scaffold
 
 PARALLEL = 1e-6
 """Sines of angles between hinge axes below this are rounding."""
@@ -75,6 +77,12 @@ def bed_turn(up: Array | None) -> Array:
     return np.stack([cross(across, up), across, up])
 
 
+def open_turn(scaffold: Scaffold) -> Array:
+    """(3, 3) whose rows are the bed's axes in the canonical frame, for what is open: upright as in its file."""
+    turn: Array = straight(scaffold.recipe) @ scaffold.rotation.T
+    return turn
+
+
 def printed_pose(assembly: Assembly, name: str) -> Array:
     """(4, 4) where a body stands as it is printed, or assembled where it is printed apart; canonical frame."""
     is_open = assembly.posture in ("open", "plate")
@@ -85,8 +93,7 @@ def printed_pose(assembly: Assembly, name: str) -> Array:
 def printed_turn(assembly: Assembly) -> Array:
     """(3, 3) rows: the bed's axes in the canonical frame."""
     if assembly.posture == "open":
-        turn: Array = assembly.solution.scaffold.rotation.T
-        return turn
+        return open_turn(assembly.solution.scaffold)
     return bed_turn(assembly.up)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from foldfab.fabrication.posture import bed_turn
+from foldfab.fabrication.posture import bed_turn, open_turn
 from foldfab.folding.anatomy import base_boxes
 from foldfab.folding.kinematics import size_at
 from foldfab.folding.model import FoldSolution, Thickness
@@ -23,7 +23,7 @@ def share_of_bed(solution: FoldSolution, posture: Posture) -> float:
     if posture == "plate":
         return max(_share(np.append(size, 0.0), bed) for size in _footprints(solution))
     if posture == "open":
-        return _share(size_at(solution, 0.0, solution.scaffold.rotation.T), bed)
+        return _share(size_at(solution, 0.0, open_turn(solution.scaffold)), bed)
     up = solution.chains[0].along if posture == "edge" and solution.chains else None
     return _share(size_at(solution, 1.0, bed_turn(up)), bed)
 

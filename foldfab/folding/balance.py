@@ -143,13 +143,16 @@ def _rooms(problem: Problem, patch: str, variant: Variant) -> tuple[float, float
     """How deep the pockets of a chain may be at its anchor and at its far base, mm: 0 at a pad."""
     site = problem.sites[patch]
     near, far = (
-        _room(problem, site, base) if base is not None and pad == 0 else 0.0
+        pocket_room(problem, site, base) if pad == 0 else 0.0
         for base, pad in zip((site.anchor, site.far), variant.pads, strict=True)
     )
     return near, far
 
 
-def _room(problem: Problem, site: Site, name: str) -> float:
+def pocket_room(problem: Problem, site: Site, name: str | None) -> float:
+    """How deep a pocket for a chain of the site may be in a base, mm; 0 where there may be none, or no base."""
+    if name is None:
+        return 0.0
     base, face = problem.scaffold.base(name), problem.faces[name]
     if STYLES[problem.thickness.hinge].has_loose_pin or any(o.extent is not None for o in base.outlines):
         return 0.0

@@ -1,8 +1,8 @@
 """Units that are the same but for where they stand: what one can do, all of them can.
 
 Furniture repeats itself, and composites do so a thousand times. The lanes of a unit and the conflicts between them
-depend on nothing but its own patches and plates; a translated copy of
-a unit gets copies of them.
+depend on nothing but its own patches and plates, and on what may be cut from these; a translated copy of a unit gets
+copies of them.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from foldfab.folding.balance import pocket_room
 from foldfab.folding.nominal import Nominal
 from foldfab.folding.outline import leaves_outline
 from foldfab.folding.problem import Problem
@@ -60,6 +61,8 @@ def pose(problem: Problem, unit: Unit) -> Pose:
     for s in sites:
         numbers = [s.foot - origin, s.across, s.along, s.rise, s.span, np.array(s.held).ravel()]
         numbers.append(np.array([s.lean, s.clear, s.patch.width, s.patch.length, s.panel]))
+        # How chains can be balanced is part of what is known about their lanes.
+        numbers.append(np.array([pocket_room(problem, s, base) for base in (s.anchor, s.far)]))
         banned = tuple(sorted(v for p, v in problem.banned if p == s.patch.name))
         ends = (place[s.anchor], place.get(s.far, -1), s.patch.hingeable, round(s.importance, 12), banned)
         seen[s.patch.name] = (_rounded(np.concatenate(numbers)), ends)

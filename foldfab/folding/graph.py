@@ -52,6 +52,9 @@ class Graph:
         self.tangled: set[tuple[int, ...]] = set()
         self.learned: list[Lesson] = []
         for clash, places in learned:
+            # Lanes on plinths belong to one look around: the next may see the same a little higher, within rounding.
+            if not all(o.has(place) for o, place in zip(self.options, places, strict=True)):
+                continue
             self.learn(tuple(o.index(place) for o, place in zip(self.options, places, strict=True)), clash)
 
     def _compare(self, problem: Problem, own: Repertoire, found: Prospects, *, in_modes: bool) -> None:

@@ -54,6 +54,10 @@ class Options:
         lane, window = divmod(index, len(self.windows))
         return self.lanes[lane], self.windows[window]
 
+    def has(self, place: tuple[Lane, tuple[int, int]] | None) -> bool:
+        """Whether the lane of an option is one of these; deletion always is."""
+        return place is None or place[0] in self.lanes
+
     def index(self, place: tuple[Lane, tuple[int, int]] | None) -> int:
         """The option of a lane and a window."""
         if place is None:

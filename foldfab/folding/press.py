@@ -6,19 +6,22 @@ bases' distance is made up by plinths under its hinges, so that it ends flat.
 
 A press comes down at level p: base b, whose whole way is e_b, starts to move when p reaches e_b and then moves with
 it, so higher bases always start before lower ones. The chain that starts a section leads: p follows its exact motion,
-the snap of the thick accordion included. Chains that cannot follow exactly are off by their *play*.
+the snap of the thick accordion included, and the second one of an accordion that leans, where it turns to a zig-zag;
+so the chain whose second snap is highest leads. Chains that cannot follow exactly are off by their *play*.
+
+Between samples all moves straight while hinges turn on circles, so samples are taken until that makes no difference.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from foldfab.folding.mechanism import descent, open_height, peak, reach, turn
 from foldfab.folding.model import Chain
-from foldfab.geometry.arrays import Array, Indices
+from foldfab.geometry.arrays import Array, Bools, Indices
 
 SAME_LEVEL = 1e-6
 """Bases whose ways differ by less start together, mm."""
@@ -28,10 +31,16 @@ SAMPLES = 48
 """Samples of each section of a unit's fold."""
 SETTLED = 4
 """Chains that snap differently move alike again when the leader has come this many times as far as to its snap."""
+SNAP_DIGITS = 6
+"""To how many digits of mm a second snap is told: less is rounding."""
 CLIMB = 10
 """Samples up to the snap."""
 TURNED = np.array([0.0, 0.02, 0.04, 0.07, 0.1])
 """How far beyond the turn of a leaning accordion more samples are taken: it hurries there."""
+STRAIGHT = 0.04
+"""How far a chain may be from its base halfway between two samples, mm: a little less than validity allows."""
+REFINEMENTS = 6
+"""How often intervals between samples are halved; each time what is left is about a quarter."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -81,13 +90,13 @@ def in_place(bases: tuple[str, ...], way: Mapping[str, float], chains: tuple[Cha
     if not levels:
         return _tips_only(bases, tips)
     sections = [_section(i, levels, way, held, gap) for i in range(len(levels))]
-    press = np.concatenate([s.press for s in sections])
-    index = np.concatenate([np.full(len(s.press), i) for i, s in enumerate(sections)])
-    climb = np.concatenate([s.climb for s in sections])
-    down = {b: _shift(b, way, levels, press, index) for b in bases}
-    fold, play = {}, {}
-    for chain in held:
-        fold[chain.patch], play[chain.patch] = _follow(chain, sections, down, climb, index)
+    down, fold, play = _followed(bases, way, levels, sections, held)
+    for _ in range(REFINEMENTS):
+        bent = _bent(held, down, fold, play)
+        if not bent.any():
+            break
+        sections = _refined(sections, bent)
+        down, fold, play = _followed(bases, way, levels, sections, held)
     path = sum(s.path for s in sections)
     samples = _times(sections)
     for chain in tips:
@@ -99,12 +108,14 @@ def in_place(bases: tuple[str, ...], way: Mapping[str, float], chains: tuple[Cha
 
 def slanted(bases: tuple[str, ...], chains: tuple[Chain, ...]) -> Motion:
     """The motion of a unit of parallel chains that drag their upper base through one circular arc."""
-    s = np.linspace(0.0, 1.0, SAMPLES + 1)
     lead = chains[0]
+    length, turned = float(lead.lengths.sum()), np.pi / 2 + abs(lead.lean)
+    count = max(SAMPLES, int(np.ceil(turned * np.sqrt(length / (8 * STRAIGHT)))))
+    s = np.linspace(0.0, 1.0, count + 1)
     way = reach(lead, s)
     way = (way - way[0]) @ lead.plane
     shift = {base: (way if base == lead.far else np.zeros_like(way)) for base in bases}
-    path = float(lead.lengths.sum()) * np.pi / 2
+    path = length * np.pi / 2
     return Motion(s, shift, {c.patch: s for c in chains}, {c.patch: np.zeros_like(s) for c in chains}, path)
 
 
@@ -126,10 +137,22 @@ class _Section:
 
     leader: Chain
     progress: Array
-    press: Array
     climb: Array
     """(k,) 0 where the section starts, 1 where the last of the starting chains snaps, and more beyond."""
+    whole: float
+    """How far the leader's far base comes down in all, mm."""
+    more: float
+    """How much higher than by the leader's own snap bases rise, mm."""
     path: float
+
+    @property
+    def press(self) -> Array:
+        """(k,) its level."""
+        press: Array = self.whole + reach(self.leader, self.progress)[:, 1] - open_height(self.leader)
+        if self.more:
+            climb = self.climb
+            press += self.more * np.where(climb < 1, climb**2 * (3 - 2 * climb), _fade(climb))
+        return press
 
 
 def _levels(values: list[float]) -> list[float]:
@@ -162,13 +185,53 @@ def _section(i: int, levels: list[float], way: Mapping[str, float], held: list[C
     down = np.unique(np.concatenate([down, _turns(leader, held, way, at, end)]))
     s = np.concatenate([at * climb, down])
     climb = np.concatenate([climb, 1 + (down - at) / crest if crest > 0 else np.full(len(down), np.inf)])
-    height = reach(leader, s)[:, 1]
-    press = whole + height - open_height(leader)
-    if crest > 0:
-        shared = _shared_rise([r for r, _ in snaps], [play_limit(c, gap) for c in starting])
-        press += (shared - rise) * np.where(climb < 1, climb**2 * (3 - 2 * climb), _fade(climb))
+    more = _shared_rise([r for r, _ in snaps], [play_limit(c, gap) for c in starting]) - rise if crest > 0 else 0.0
     path = float(leader.lengths.max()) * np.pi / 2 * (end - begin) * len(leader.lengths)
-    return _Section(leader, s, press, climb, path)
+    return _Section(leader, s, climb, whole, more, path)
+
+
+def _followed(
+    bases: tuple[str, ...], way: Mapping[str, float], levels: list[float], sections: list[_Section], held: list[Chain]
+) -> tuple[dict[str, Array], dict[str, Array], dict[str, Array]]:
+    """By base how it comes down, and by patch the progress and the play of its chain, (k,) each."""
+    press = np.concatenate([s.press for s in sections])
+    index = np.concatenate([np.full(len(s.progress), i) for i, s in enumerate(sections)])
+    climb = np.concatenate([s.climb for s in sections])
+    down = {b: _shift(b, way, levels, press, index) for b in bases}
+    fold, play = {}, {}
+    for chain in held:
+        fold[chain.patch], play[chain.patch] = _follow(chain, sections, down, climb, index)
+    return down, fold, play
+
+
+def _bent(
+    held: list[Chain], down: Mapping[str, Array], fold: Mapping[str, Array], play: Mapping[str, Array]
+) -> Bools:
+    """(k - 1,) the intervals halfway through which a chain and its bases are apart."""
+    found = np.zeros(len(next(iter(down.values()))) - 1, dtype=bool)
+    for chain in held:
+        drop, s, give = map(_halfway, (down[chain.anchor] - down[chain.far or ""], fold[chain.patch], play[chain.patch]))
+        found |= np.abs(drop + give + reach(chain, s)[:, 1] - open_height(chain)) > STRAIGHT
+    return found
+
+
+def _halfway(values: Array) -> Array:
+    halfway: Array = (values[1:] + values[:-1]) / 2
+    return halfway
+
+
+def _refined(sections: list[_Section], bent: Bools) -> list[_Section]:
+    """The sections with another sample in the middle of each of these intervals."""
+    made, start = [], 0
+    for section in sections:
+        count = len(section.progress)
+        at = np.nonzero(bent[start : start + count - 1])[0]
+        progress, climb = (
+            np.insert(values, at + 1, _halfway(values)[at]) for values in (section.progress, section.climb)
+        )
+        made.append(replace(section, progress=progress, climb=climb))
+        start += count
+    return made
 
 
 def _turns(leader: Chain, held: list[Chain], way: Mapping[str, float], at: float, end: float) -> Array:
@@ -199,7 +262,32 @@ def _shared_rise(rises: list[float], limits: list[float]) -> float:
 
 
 def _leader(many: list[Chain], way: Mapping[str, float]) -> Chain:
-    return max(many, key=lambda c: (way[c.anchor], -len(c.lengths), c.patch))
+    return max(many, key=lambda c: (way[c.anchor], _second_snap(c), -len(c.lengths), c.patch))
+
+
+def _second_snap(chain: Chain) -> float:
+    """How far the far end rises again after it has begun to fall, mm."""
+    _, height, top = descent(chain)
+    return round(float((height[top:] - np.minimum.accumulate(height[top:])).max()), SNAP_DIGITS)
+
+
+def _falling(chain: Chain) -> tuple[Array, Array]:
+    """Progress (n,) past its snap and how far the far end has then come down (n,), which never gets less.
+
+    Where it rises for a second time it is taken to come down evenly from as high as it will rise until it is as low
+    as it has been: no chain ever jumps, and what that is off is play.
+    """
+    s, height, top = descent(chain)
+    s, height = s[top:], height[top:]
+    if _second_snap(chain):
+        lowest = np.minimum.accumulate(height)
+        rises = np.nonzero(height > lowest)[0]
+        crest = float(height[rises].max())
+        first = int(np.nonzero(height[: rises[0]] >= crest)[0][-1])
+        last = min(int(rises[-1]) + 1, len(s) - 1)
+        height = height.copy()
+        height[first : last + 1] = np.interp(s[first : last + 1], s[[first, last]], height[[first, last]])
+    return s, -np.minimum.accumulate(height)
 
 
 def _is_folding(chain: Chain, way: Mapping[str, float], level: float) -> bool:
@@ -228,7 +316,8 @@ def _follow(
     is_own, fade = index == own, _fade(climb)
     crest = float((-drop[is_own]).max()) if top else 0.0
     lifted = -drop + np.where(is_own, (height[top] - crest) * fade, 0.0)
-    found = np.interp(-lifted, -np.minimum.accumulate(height[top:]), s[top:])
+    past, fallen = _falling(chain)
+    found = np.interp(-lifted, fallen, past)
     found = np.where(is_own & (climb < 1), s[top] * np.clip(climb, 0.0, 1.0), found)
     if _is_twin(chain, sections[own].leader):
         found[is_own] = sections[own].progress

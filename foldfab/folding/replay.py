@@ -60,7 +60,7 @@ def _learn_from_repair(
     unit = repaired.unit
     around = look(group.problem, scene, repertoire(group.problem, unit))
     for clash, places in repaired.learned:
-        if all(place is None or place[0] in options[p].lanes for p, place in zip(unit.patches, places, strict=True)):
+        if all(options[p].has(place) for p, place in zip(unit.patches, places, strict=True)):
             tried = {p: options[p].index(place) for p, place in zip(unit.patches, places, strict=True)}
             other = replace(proposal, chosen={**proposal.chosen, **tried})
             learn(group, lessons_of(group, scene, unit, around, options, other, done, clash))

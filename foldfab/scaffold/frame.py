@@ -19,6 +19,9 @@ ONE_LINE = np.radians(0.5)
 """Sides whose normals are closer than this face along one line."""
 SAME = 1e-3
 """Lengths that differ by less than this share of the furniture's size tell nothing apart, nor do such angles."""
+ROUNDING = 1e-9
+"""Outlines that differ by less than this share are as large as each other."""
+QUARTER = np.pi / 2
 _TURNS = np.array([[[1, 0], [0, 1]], [[-1, 0], [0, -1]], [[0, 1], [-1, 0]], [[0, -1], [1, 0]]], dtype=np.float64)
 """Quarter turns of x and y, the identity first."""
 
@@ -37,6 +40,32 @@ def canonical(recipe: Recipe, direction: Array) -> Array:
     center = np.array([part.center for part in parts]) @ turn.T[:, :2] @ yaw.T
     reach = (np.abs(axes) * size[:, :, None] / 2).sum(1)
     return np.vstack([_quarter(center, reach) @ yaw @ turn[:2], turn[2:]])
+
+
+def straight(recipe: Recipe) -> Array:
+    """The rotation (3, 3) about z by which the furniture, upright as in its file, has the smallest outline on the bed.
+
+    Along one of the lines that its sides face, the identity where none makes the outline notably smaller.
+    """
+    axes, size = np.array([part.axes for part in recipe.parts]), np.array([part.size for part in recipe.parts])
+    center = np.array([part.center for part in recipe.parts])[:, :2]
+    best, least = np.eye(2), float(np.ptp(_corners(center, axes[..., :2], size), axis=0).prod()) * (1 - SAME)
+    for x, y in axes[np.abs(axes[:, :, 2]) < LEVEL][:, :2]:
+        angle = np.arctan2(y, x)
+        angle -= QUARTER * np.round(angle / QUARTER)
+        turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+        area = float(np.ptp(_corners(center @ turn.T, axes[..., :2] @ turn.T, size), axis=0).prod())
+        if area < least * (1 - ROUNDING):
+            best, least = turn, area
+    found = np.eye(3)
+    found[:2, :2] = best
+    return found
+
+
+def _corners(center: Array, axes: Array, size: Array) -> Array:
+    """(2 n, 2) lower and upper corners of the bounds of boxes, in the plane."""
+    reach = (np.abs(axes) * size[:, :, None] / 2).sum(1)
+    return np.concatenate([center - reach, center + reach])
 
 
 def _along(axes: Array, size: Array) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -71,3 +72,22 @@ def test_beside_a_promise_nothing_is_dragged_along(problem: Make) -> None:
     assert {x.variant.mechanism for x in own.lanes} == {"slanted"}
     assert graph.promising({"left": 0.0}, 10.0) == []
     assert graph.promising({"left": 0.0, "right": 0.0}, 10.0) == ["left", "right"]
+
+
+def test_what_was_learned_of_lanes_that_are_not_there_any_more_is_left_aside(problem: Make) -> None:
+    """Surroundings that differ within rounding are the same, but plinths over what lies in them are as high as it is."""
+    made = problem("corner", slanting=False)
+    (unit,) = made.units
+    own = repertoire(made, unit)
+    first = graph_of(made)
+    picked = first.cheapest()
+    assert picked is not None
+    first.learn(picked, Clash((unit.patches,), "they meet"))
+    ((clash, places),) = first.learned
+    taken = first.options[0].place(picked[0])
+    assert taken is not None
+    raised = replace(taken[0], number=len(own.lanes), variant=replace(taken[0].variant, pads=(3.0, 0.0)))
+    others = (clash, ((raised, taken[1]), *places[1:]))
+    again = Graph(made, own, unhindered(made, own), np.zeros(3), [others])
+    assert again.cheapest() == picked and not again.learned
+    assert Graph(made, own, unhindered(made, own), np.zeros(3), [others, *first.learned]).cheapest() == first.cheapest()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,8 +16,11 @@ from foldfab.folding.mechanism import reach, tilts
 from foldfab.folding.model import FoldSolution
 from foldfab.folding.press import follow_down, play_limit, ways
 from foldfab.geometry.arrays import Array
+from foldfab.recipe.model import Part, Pattern
+from foldfab.validity.verify import violations
 
 Make = Callable[..., FoldSolution]
+Leaning = Callable[..., tuple[Part, ...]]
 BASES = ("a", "b", "c", "d")
 FLAT = 1e-6
 
@@ -118,3 +122,53 @@ def test_progress_is_found_from_how_far_the_far_end_came_down(solution: Make, na
     progress = np.linspace(0.3, 1.0, 50)
     drop = reach(chain, np.zeros(1))[0, 1] - reach(chain, progress)[:, 1]
     assert follow_down(chain, drop) == pytest.approx(progress, abs=1e-5)
+
+
+@pytest.fixture
+def two_leaning(board_at: Callable[..., Part], leaning_at: Callable[..., Part]) -> Leaning:
+    """Makes walls `three` and `five` that take as many hinges, from their height and how far each leans, mm."""
+
+    def make(height: float, three: float, five: float) -> tuple[Part, ...]:
+        walls = (("three", three, 3, -40.0), ("five", five, 5, 40.0))
+        made = (
+            replace(leaning_at(name, -over / 2, over / 2, 0.0, height, 60.0, y), pin=Pattern(hinges=hinges))
+            for name, over, hinges, y in walls
+        )
+        return (board_at("ground", 0.0, 400.0, 160.0), board_at("ceiling", height, 400.0, 160.0), *made)
+
+    return make
+
+
+@pytest.mark.parametrize(("height", "three", "five", "thickness"), [
+    # Its second snap is more than the play of five hinges: it has to lead.
+    (131.2, -4.8, 24.0, 6.0), (114.2, -10.0, -24.0, 5.0),
+    # Samples as far apart as elsewhere are too few near the end, and where the steeper one turns.
+    (221.4, 61.0, -9.2, 5.0), (230.8, -35.6, -4.0, 2.0), (204.3, 28.6, 7.0, 2.0), (196.1, -56.8, 0.0, 3.0),
+])  # fmt: skip
+def test_pairs_that_lean_differently_move_as_one(
+    height: float, three: float, five: float, thickness: float, solution: Make, two_leaning: Leaning
+) -> None:
+    parts = two_leaning(height, three, five)
+    made = solution(parts, slanting=False, max_hinges=5, thickness=thickness)
+    assert sorted(m.hinges for m in made.modifications) == [3, 5]
+    assert violations(made) == ()
+
+
+def test_the_chain_with_the_highest_second_snap_leads(solution: Make, two_leaning: Leaning) -> None:
+    """Its second snap, of almost 2 mm, lifts the base again; the other one comes after it without a jump."""
+    made = solution(two_leaning(131.2, -4.8, 24.0), slanting=False, max_hinges=5, thickness=6.0)
+    step = made.steps[0]
+    # The clock goes by the one that leads.
+    assert step.fold["five"] == pytest.approx(step.samples, abs=1e-3)
+    height = step.travel["ceiling"][:, 2]
+    assert (height - np.minimum.accumulate(height))[step.samples > 0.1].max() > 1.0
+    assert max(float(np.abs(np.diff(fold)).max()) for fold in step.fold.values()) < 0.06
+
+
+def test_tall_slanted_walls_are_sampled_more_densely(
+    solution: Make, board_at: Callable[..., Part], leaning_at: Callable[..., Part]
+) -> None:
+    leg = replace(leaning_at("leg", -15.0, 15.0, 0.0, 460.0), pin=Pattern(mechanism="slanted"))
+    made = solution((board_at("ground", 0.0), board_at("ceiling", 460.0), leg))
+    assert made.modifications[0].mechanism == "slanted"
+    assert violations(made) == ()

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 import foldfab
 from foldfab.geometry.arrays import Array
 from foldfab.recipe.model import Part, Recipe
-from foldfab.scaffold.frame import canonical
+from foldfab.scaffold.frame import canonical, straight
 
 DOWN = np.array([0.0, 0.0, -1.0])
 WAYS = {"-z": DOWN, "+z": -DOWN, "-x": np.array([-1.0, 0, 0]), "+y": np.array([0, 1.0, 0])}
@@ -81,3 +81,27 @@ def test_parts_that_all_lie_askew_to_each_other_have_a_frame(box: Box, recipe: M
     turn = np.array([[1, 0, 0], [0, 0.8, -0.6], [0, 0.6, 0.8]])
     found = canonical(recipe((box("a", (0, 0, 0), (50, 60, 700), turn @ tilt @ turn),)), DOWN)
     assert found @ found.T == pytest.approx(np.eye(3))
+
+
+def about_z(degrees: float) -> Array:
+    sin, cos = np.sin(np.radians(degrees)), np.cos(np.radians(degrees))
+    return np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_what_stands_straight_in_its_file_stays_so_on_the_bed(name: str) -> None:
+    assert np.array_equal(straight(foldfab.load(name)), np.eye(3))
+
+
+@pytest.mark.parametrize(("askew", "back"), [(20.0, -20.0), (-30.0, 30.0), (70.0, 20.0), (0.01, 0.0)])
+def test_what_stands_askew_is_turned_straight_the_short_way(askew: float, back: float) -> None:
+    found = straight(turned(foldfab.load("bench"), about_z(askew)))
+    assert found == pytest.approx(about_z(back), abs=1e-9)
+
+
+def test_of_the_lines_that_sides_face_that_of_the_smallest_outline_is_taken(box: Box, recipe: Make) -> None:
+    """Large legs that cross below a top, at 45 degrees to it, do not turn the top askew."""
+    top = box("top", (0, 0, 700), (600, 600, 18))
+    legs = tuple(box(f"leg{k}", (0, 0, 340), (18, 600, 680), about_z(45 + 90 * k).T) for k in range(2))
+    assert np.array_equal(straight(recipe((top, *legs))), np.eye(3))
+    assert straight(turned(recipe((top, *legs)), about_z(20))) == pytest.approx(about_z(-20), abs=1e-9)

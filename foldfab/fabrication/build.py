@@ -18,12 +18,13 @@ from foldfab.fabrication.model import AS_READ, LEVEL, Assembly, Finding, Joint
 from foldfab.fabrication.own import own_shapes
 from foldfab.fabrication.panels import panels
 from foldfab.fabrication.plates import axis_of, plate
-from foldfab.fabrication.posture import edge_up, needs_pins
+from foldfab.fabrication.posture import cuts_parts, edge_up, needs_pins
 from foldfab.fabrication.printed import printed
 from foldfab.fabrication.props import planed, propped
 from foldfab.fabrication.relief import relief
 from foldfab.fabrication.shapes import Shape, cut
 from foldfab.fabrication.snaps import snap_findings
+from foldfab.fabrication.soles import eased, stances
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.stopping import measured, stopped
 from foldfab.folding.kinematics import configuration, key_times
@@ -82,18 +83,23 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
 def _finished(
     draft: Assembly, made: dict[str, Solid], ramps: dict[str, list[Shape]]
 ) -> tuple[dict[str, Solid], Assembly, list[Finding]]:
-    """What is cut once the stops stand: ramps on edge, and bores that are to be open for their pins."""
-    solution = draft.solution
+    """What is cut once the stops stand: ramps on edge, bores that are to be open for their pins, edges on the bed."""
+    solution, props, has_bores = draft.solution, dict[str, Solid](), STYLES[draft.solution.thickness.hinge].has_loose_pin
     if draft.up is not None:
         made = {name: solids.tidied(solids.cut(b, [printed(r) for r in ramps[name]])) for name, b in made.items()}
         props = propped(made, draft.poses, draft.up, solution.thickness.gap)
-        sloped = {name: cut(shape, ramps[name]) for name, shape in draft.shapes.items()}
-        draft = replace(draft, shapes=sloped, joints=measured(draft, made), propped=bodies(solution, props))
-    elif STYLES[solution.thickness.hinge].has_loose_pin:
+        draft = replace(draft, shapes={name: cut(shape, ramps[name]) for name, shape in draft.shapes.items()})
+    elif has_bores:
         made, shapes = bored(solution, made, draft.shapes)
         draft = replace(draft, shapes=shapes)
-        return made, replace(draft, joints=measured(draft, made)), blocked(draft, made)
-    return made, draft, []
+    # Parts that are cut have other edges on the bed afterwards.
+    if not cuts_parts(solution, draft.posture):
+        layer, stance = solution.scaffold.recipe.print.layer, stances(draft, bodies(solution, made))
+        made, shapes = eased(made, draft.shapes, stance, layer)
+        props, _ = eased(props, {}, {name: stance[name] for name in props}, layer)
+        draft = replace(draft, shapes=shapes)
+    draft = replace(draft, joints=measured(draft, made), propped=bodies(solution, props))
+    return made, draft, blocked(draft, made) if has_bores and draft.up is None else []
 
 
 def _require_hinges(solution: FoldSolution, posture: Posture) -> None:

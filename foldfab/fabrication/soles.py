@@ -78,7 +78,7 @@ def _cutter(body: Solid, layer: float) -> Shape | None:
         return None
     width = bevel(layer)
     # What is wider above or below the middle of the layer, as a barrel that lies on the bed, is drawn in as a whole.
-    around = solids.silhouette(solids.between(body, 0.0, width))
+    around = solids.silhouette(solids.between(body, 0.0, width + BEYOND))
     wedges = list(_wedges(_rings(around), _rings(solids.section(body, layer / 2)), width))
     return union(wedges) if wedges else None
 
@@ -141,7 +141,8 @@ def _runs(place: Array, along: Array, around: Array, first: Array) -> Iterator[t
     count = max(1, int(np.ceil(np.linalg.norm(place[1] - place[0]) / STEP)))
     points = place[0] + ((np.arange(count) + 0.5) / count)[:, None] * (place[1] - place[0])
     inward = np.array([-along[1], along[0]])
-    reached = np.pad(_is_inside(points + 2 * ROUND * inward, first), 1)
+    # Just behind the tip of a sharp corner, or further in where the wall leans.
+    reached = np.pad(np.logical_or(*(_is_inside(points + depth * inward, first) for depth in (2 * ROUND, DRAWN_IN))), 1)
     # A step further, so that no skin is left at the ends.
     is_cut = reached[:-2] | reached[1:-1] | reached[2:]
     is_cut &= _across(points, along, around) >= 2 * (DRAWN_IN + LINE)

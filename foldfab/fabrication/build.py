@@ -24,9 +24,10 @@ from foldfab.fabrication.props import planed, propped
 from foldfab.fabrication.relief import relief
 from foldfab.fabrication.shapes import Shape, cut
 from foldfab.fabrication.snaps import snap_findings
-from foldfab.fabrication.soles import eased, stances
+from foldfab.fabrication.soles import eased
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.stopping import measured, stopped
+from foldfab.fabrication.turning import PAST
 from foldfab.folding.kinematics import configuration, key_times
 from foldfab.folding.mechanism import joints, tilts
 from foldfab.folding.model import Chain, FoldSolution
@@ -92,14 +93,30 @@ def _finished(
     elif has_bores:
         made, shapes = bored(solution, made, draft.shapes)
         draft = replace(draft, shapes=shapes)
-    # Parts that are cut have other edges on the bed afterwards.
-    if not cuts_parts(solution, draft.posture):
-        layer, stance = solution.scaffold.recipe.print.layer, stances(draft, bodies(solution, made))
-        made, shapes = eased(made, draft.shapes, stance, layer)
-        props, _ = eased(props, {}, {name: stance[name] for name in props}, layer)
-        draft = replace(draft, shapes=shapes)
-    draft = replace(draft, joints=measured(draft, made), propped=bodies(solution, props))
+    made, draft = _bevelled(replace(draft, propped=bodies(solution, props)), made)
     return made, draft, blocked(draft, made) if has_bores and draft.up is None else []
+
+
+def _bevelled(draft: Assembly, made: dict[str, Solid]) -> tuple[dict[str, Solid], Assembly]:
+    """Bodies without their edges on the bed, but those whose hinges would stop too late without them."""
+    whole = bodies(draft.solution, made)
+    done, shapes = eased(draft, whole, made, draft.shapes)
+    joints = measured(draft, done)
+    is_prompt = {joint.name: [_is_prompt(angle) for angle in joint.stop_deg] for joint in draft.joints}
+    late = [j for j in joints if any(was and not _is_prompt(a) for was, a in zip(is_prompt[j.name], j.stop_deg, strict=True))]
+    draft = replace(draft, spared=frozenset(name for joint in late for name in joint.parts))
+    # Parts that are cut have other edges on the bed afterwards.
+    if cuts_parts(draft.solution, draft.posture):
+        return made, replace(draft, joints=measured(draft, made))
+    if late:
+        done, shapes = eased(draft, whole, made, draft.shapes)
+        joints = measured(draft, done)
+    props, _ = eased(draft, whole, {body.name: solids.from_mesh(body.vertices, body.faces) for body in draft.propped}, {})
+    return done, replace(draft, shapes=shapes, joints=joints, propped=bodies(draft.solution, props))
+
+
+def _is_prompt(angle: float | None) -> bool:
+    return angle is not None and angle <= PAST
 
 
 def _require_hinges(solution: FoldSolution, posture: Posture) -> None:

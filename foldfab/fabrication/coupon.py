@@ -19,7 +19,7 @@ from foldfab.fabrication.panels import panels
 from foldfab.fabrication.plates import plate
 from foldfab.fabrication.printed import printed
 from foldfab.fabrication.shapes import union
-from foldfab.fabrication.soles import eased
+from foldfab.fabrication.soles import bevelled
 from foldfab.fabrication.solids import Solid
 from foldfab.folding.mechanism import frames
 from foldfab.folding.model import Chain, Thickness
@@ -74,7 +74,7 @@ def coupon(thickness: float, posture: Posture) -> Coupon:
     made |= {f"{gap:.2f}": solids.tidied(flap) for gap, (_, flap) in zip(kept, halves, strict=True)}
     lift = np.eye(4)
     lift[2, 3] = -min(float(solids.bounds(solid)[0][2]) for solid in made.values())
-    made, _ = eased(made, {}, dict.fromkeys(made, lift), LAYER)
+    made, _ = bevelled(made, {}, dict.fromkeys(made, lift), LAYER)
     _inspect(made, kept)
     bodies = tuple(_body(name, solid, lift[:3, 3]) for name, solid in made.items())
     return Coupon(bodies, tuple(kept), thickness, posture)

@@ -23,7 +23,7 @@ from foldfab.fabrication.posture import cuts_parts
 from foldfab.fabrication.room import footprint
 from foldfab.fabrication.seams import fit_of
 from foldfab.fabrication.shapes import Shape
-from foldfab.fabrication.soles import eased, stances
+from foldfab.fabrication.soles import PIECE, eased
 from foldfab.fabrication.solids import Solid
 from foldfab.folding.model import Chain, FoldSolution
 from foldfab.geometry.arrays import Array
@@ -100,7 +100,7 @@ def cut_to_bed(assembly: Assembly, made: dict[str, Solid]) -> tuple[Assembly, li
         whole = Piece(made[one.name], assembly.shapes[one.name])
         if not stock.fits(whole):
             pieces, keys = cut_up(whole, stock)
-            cut[one.name] = {f"{one.name}:{i}": piece for i, piece in enumerate(pieces, 1)}
+            cut[one.name] = {f"{one.name}{PIECE}{i}": piece for i, piece in enumerate(pieces, 1)}
             seams += _seams(cut[one.name], keys, fit)
     solid_of, shapes = _eased(assembly, made, cut)
     if not cut:
@@ -126,8 +126,7 @@ def _eased(
     solid_of = {name: solid for name, solid in made.items() if name not in cut}
     solid_of |= {name: piece.solid for name, piece in pieces.items()}
     shapes = {name: pieces[name].shape if name in pieces else assembly.shapes[name] for name in solid_of}
-    stance = stances(assembly, _bodies(assembly, solid_of, cut))
-    return eased(solid_of, shapes, stance, assembly.solution.scaffold.recipe.print.layer)
+    return eased(assembly, _bodies(assembly, solid_of, cut), solid_of, shapes)
 
 
 def _bodies(assembly: Assembly, solid_of: dict[str, Solid], cut: dict[str, dict[str, Piece]]) -> tuple[Body, ...]:

@@ -33,6 +33,8 @@ LAP = 0.02
 """How far wedges reach into each other in a corner, mm."""
 UNEVEN = 0.01
 """By how much neighbouring bevels differ: where four faces meet in a point, kernels leave slivers, mm."""
+PIECE = ":"
+"""What stands between the name of a part and the number of a piece of it."""
 SHARP = 0.5
 """1 + the cosine of the angle by which an outline turns in the sharpest corner that is mitred: 120°."""
 
@@ -59,9 +61,18 @@ def stances(assembly: Assembly, bodies: Iterable[Body]) -> dict[str, Array]:
 
 
 def eased(
+    assembly: Assembly, bodies: Iterable[Body], made: Mapping[str, Solid], shapes: Mapping[str, Shape]
+) -> tuple[dict[str, Solid], dict[str, Shape]]:
+    """Solids, some of the bodies of an assembly, and what they are made of, without their edges on the bed."""
+    stance = {name: pose for name, pose in stances(assembly, bodies).items() if name in made}
+    stance = {name: pose for name, pose in stance.items() if not {name, name.rsplit(PIECE, 1)[0]} & assembly.spared}
+    return bevelled(made, shapes, stance, assembly.solution.scaffold.recipe.print.layer)
+
+
+def bevelled(
     made: Mapping[str, Solid], shapes: Mapping[str, Shape], stance: Mapping[str, Array], layer: float
 ) -> tuple[dict[str, Solid], dict[str, Shape]]:
-    """Bodies and what they are made of, without their edges on the bed; what does not reach it stays as it is."""
+    """Bodies without their edges on the bed, by the motions that take them there; what does not reach it stays."""
     done, told = dict(made), dict(shapes)
     for name, pose in sorted(stance.items()):
         cutter = _cutter(solids.moved(made[name], pose), layer)

@@ -12,12 +12,13 @@ import pytest
 from foldfab.export.bed import on_bed, print_files
 from foldfab.export.shell import Shell
 from foldfab.fabrication import soles, solids
+from foldfab.fabrication.analytic import analytic
 from foldfab.fabrication.coupon import coupon
 from foldfab.fabrication.model import Assembly
 from foldfab.fabrication.printed import printed
 from foldfab.fabrication.shapes import Shape, box, cut, cone, placed, rod, union
 from foldfab.fabrication.solids import Outline, Solid
-from foldfab.fabrication.soles import DRAWN_IN, UNEVEN, bevel, eased
+from foldfab.fabrication.soles import DRAWN_IN, UNEVEN, bevel, bevelled
 from foldfab.recipe.model import Posture, Printer
 
 LAYER = 0.2
@@ -29,7 +30,7 @@ CORNERS = 0.1
 
 def stood(shape: Shape, layer: float = LAYER) -> Solid:
     """A body on the bed as it is printed."""
-    made, shapes = eased({"it": printed(shape)}, {"it": shape}, {"it": np.eye(4)}, layer)
+    made, shapes = bevelled({"it": printed(shape)}, {"it": shape}, {"it": np.eye(4)}, layer)
     assert shapes["it"] is shape or made["it"].volume() == pytest.approx(printed(shapes["it"]).volume(), rel=1e-4)
     return made["it"]
 
@@ -72,6 +73,14 @@ def test_what_would_be_less_than_two_lines_wide_keeps_its_edges(width: float) ->
     assert first.area() > 0.85 * printed(rib).slice(LAYER / 2).area()
     beside = first ^ solids.rectangle(np.array([15.0, 4 + width / 2]), np.array([4.0, 4.0]))
     assert beside.area() == pytest.approx(4 * width)
+
+
+def test_bodies_for_cad_have_the_same_bevels() -> None:
+    shape = union([box((0, 0, 0), (30, 10, 5)), box((0, 0, 0), (10, 30, 5))])
+    made, shapes = bevelled({"it": printed(shape)}, {"it": shape}, {"it": np.eye(4)}, LAYER)
+    cad = analytic(shapes["it"])
+    assert made["it"].volume() < 2500 - 4
+    assert cad.volume == pytest.approx(made["it"].volume(), rel=1e-5)
 
 
 def test_what_does_not_stand_on_the_bed_stays_as_it_is() -> None:

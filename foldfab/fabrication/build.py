@@ -111,8 +111,7 @@ def _bevelled(draft: Assembly, made: dict[str, Solid]) -> tuple[dict[str, Solid]
     if late:
         done, shapes = eased(draft, whole, made, draft.shapes)
         joints = measured(draft, done)
-    props, _ = eased(draft, whole, {body.name: solids.from_mesh(body.vertices, body.faces) for body in draft.propped}, {})
-    return done, replace(draft, shapes=shapes, joints=joints, propped=bodies(draft.solution, props))
+    return done, replace(draft, shapes=shapes, joints=joints)
 
 
 def _is_prompt(angle: float | None) -> bool:

@@ -89,7 +89,7 @@ def _cutter(body: Solid, layer: float) -> Shape | None:
         return None
     width = bevel(layer)
     # What is wider above or below the middle of the layer, as a barrel that lies on the bed, is drawn in as a whole.
-    around = solids.silhouette(solids.between(body, 0.0, width + BEYOND))
+    around = solids.silhouette(solids.between(body, 0.0, width + 2 * BEYOND))
     wedges = list(_wedges(_rings(around), _rings(solids.section(body, layer / 2)), width))
     return union(wedges) if wedges else None
 

@@ -23,7 +23,7 @@ from foldfab.geometry.arrays import Array, Bools
 
 DRAWN_IN = 0.2
 """By how much the first layer is smaller than its body at half its height, on each side, mm: what slicers take off."""
-BEYOND = 0.1
+BEYOND = 0.07
 """How far a cutter reaches out of its body: coplanar faces leave skins, mm."""
 ROUND = 0.01
 """Detail of an outline that makes no bevel of its own, mm."""
@@ -89,7 +89,7 @@ def _cutter(body: Solid, layer: float) -> Shape | None:
         return None
     width = bevel(layer)
     # What is wider above or below the middle of the layer, as a barrel that lies on the bed, is drawn in as a whole.
-    around = solids.silhouette(solids.between(body, 0.0, width + 2 * BEYOND))
+    around = solids.silhouette(solids.between(body, 0.0, width + BEYOND + 3 * UNEVEN))
     wedges = list(_wedges(_rings(around), _rings(solids.section(body, layer / 2)), width))
     return union(wedges) if wedges else None
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from foldfab import pipeline
 from foldfab.export.bed import on_bed, print_files
 from foldfab.export.shell import Shell
 from foldfab.fabrication import soles, solids
@@ -128,17 +129,22 @@ def meet(one: Outline, other: Outline, margin: float) -> bool:
     return not (solids.grown(one, margin) ^ other).is_empty()
 
 
-def test_on_edge_bodies_are_further_apart_on_the_bed_than_above(assembled: Callable[..., Assembly]) -> None:
-    made = assembled("table", "edge")
+def on_edge() -> Assembly:
+    """Legs and a seat that all stand on the bed."""
+    return pipeline.fabricate(pipeline.foldabilize(pipeline.load("bench-legs", posture="edge")))
+
+
+def test_on_edge_bodies_are_further_apart_on_the_bed_than_above() -> None:
+    made = on_edge()
     gap, shells = made.solution.thickness.gap, on_bed(made)
     above = least(sections(shells, 3.5 * LAYER), 1.0)
     assert gap - 0.02 <= above < gap + DRAWN_IN
     assert least(sections(shells, 0.5 * LAYER), 1.0) >= above + 2 * DRAWN_IN - 0.02
 
 
-def test_without_bevels_they_are_not(monkeypatch: pytest.MonkeyPatch, assembled: Callable[..., Assembly]) -> None:
+def test_without_bevels_they_are_not(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(soles, "_wedges", lambda *_: iter(()))
-    made = assembled.__wrapped__("table", "edge")  # type: ignore[attr-defined]
+    made = on_edge()
     assert least(sections(on_bed(made), 0.5 * LAYER), 1.0) < made.solution.thickness.gap + DRAWN_IN
 
 

@@ -17,7 +17,6 @@ import numpy as np
 from foldfab.export.solid import Solid
 from foldfab.geometry.arrays import Array, Bools
 from foldfab.slicing.gcode import Layer
-from foldfab.slicing.profile import ELEPHANT_FOOT_MM
 
 if TYPE_CHECKING:
     from manifold3d import CrossSection
@@ -128,17 +127,21 @@ def _sections(bodies: Sequence[Solid], z: float) -> dict[str, _Section]:
     for body in bodies:
         if body.low[2] < z < body.high[2]:
             under, over = body.manifold.slice(z - HAIR_MM), body.manifold.slice(z + HAIR_MM)
-            sections[body.name] = _Section(under ^ over, abs(under.area() - over.area()) > LEVEL_MM2)
+            # Bevels of 45° along the bed are no level faces.
+            bevels = 2 * HAIR_MM * sum(_length(ring) for ring in under.to_polygons())
+            sections[body.name] = _Section(under ^ over, abs(under.area() - over.area()) > LEVEL_MM2 + bevels)
     return sections
+
+
+def _length(ring: Array) -> float:
+    return float(np.linalg.norm(np.roll(ring, -1, axis=0) - ring, axis=1).sum())
 
 
 def _layer(
     layer: Layer, sections: dict[str, _Section], windows: list[tuple[Array, Array]]
 ) -> tuple[tuple[int, int], list[Clash]]:
     """How many pieces at hinges there are and have an outline, and what went wrong."""
-    # The first layer is drawn in against the elephant's foot.
-    inset = ROOM_MM / 2 + (ELEPHANT_FOOT_MM if layer.top <= layer.height + 1e-6 else 0.0)
-    pieces = [piece for name, section in sections.items() for piece in _pieces(name, section, inset)]
+    pieces = [piece for name, section in sections.items() for piece in _pieces(name, section)]
     is_near = [any(bool((p.low < high).all() and (low < p.high).all()) for low, high in windows) for p in pieces]
     groups = [_crossed(pieces, path) for path in layer.outlines]
     clashes, fused = [], set[int]()
@@ -153,14 +156,14 @@ def _layer(
     return (len(wanted), len(wanted & own)), clashes
 
 
-def _pieces(name: str, section: _Section, inset: float) -> list[_Piece]:
+def _pieces(name: str, section: _Section) -> list[_Piece]:
     pieces = []
     for part in section.shape.decompose():
         if part.is_empty():
             continue
         rings = [np.asarray(ring, dtype=np.float64) for ring in part.to_polygons()]
         edges = np.concatenate([np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in rings])
-        is_wide = not section.is_level and not part.offset(-inset).is_empty()
+        is_wide = not section.is_level and not part.offset(-ROOM_MM / 2).is_empty()
         pieces.append(_Piece(name, edges, edges.min(axis=(0, 1)), edges.max(axis=(0, 1)), is_wide))
     return pieces
 

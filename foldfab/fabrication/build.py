@@ -18,14 +18,16 @@ from foldfab.fabrication.model import AS_READ, LEVEL, Assembly, Finding, Joint
 from foldfab.fabrication.own import own_shapes
 from foldfab.fabrication.panels import panels
 from foldfab.fabrication.plates import axis_of, plate
-from foldfab.fabrication.posture import edge_up, needs_pins
+from foldfab.fabrication.posture import cuts_parts, edge_up, needs_pins
 from foldfab.fabrication.printed import printed
 from foldfab.fabrication.props import planed, propped
 from foldfab.fabrication.relief import relief
 from foldfab.fabrication.shapes import Shape, cut
 from foldfab.fabrication.snaps import snap_findings
+from foldfab.fabrication.soles import eased
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.stopping import measured, stopped
+from foldfab.fabrication.turning import PAST
 from foldfab.folding.kinematics import configuration, key_times
 from foldfab.folding.mechanism import joints, tilts
 from foldfab.folding.model import Chain, FoldSolution
@@ -82,18 +84,38 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
 def _finished(
     draft: Assembly, made: dict[str, Solid], ramps: dict[str, list[Shape]]
 ) -> tuple[dict[str, Solid], Assembly, list[Finding]]:
-    """What is cut once the stops stand: ramps on edge, and bores that are to be open for their pins."""
-    solution = draft.solution
+    """What is cut once the stops stand: ramps on edge, bores that are to be open for their pins, edges on the bed."""
+    solution, props, has_bores = draft.solution, dict[str, Solid](), STYLES[draft.solution.thickness.hinge].has_loose_pin
     if draft.up is not None:
         made = {name: solids.tidied(solids.cut(b, [printed(r) for r in ramps[name]])) for name, b in made.items()}
         props = propped(made, draft.poses, draft.up, solution.thickness.gap)
-        sloped = {name: cut(shape, ramps[name]) for name, shape in draft.shapes.items()}
-        draft = replace(draft, shapes=sloped, joints=measured(draft, made), propped=bodies(solution, props))
-    elif STYLES[solution.thickness.hinge].has_loose_pin:
+        draft = replace(draft, shapes={name: cut(shape, ramps[name]) for name, shape in draft.shapes.items()})
+    elif has_bores:
         made, shapes = bored(solution, made, draft.shapes)
         draft = replace(draft, shapes=shapes)
-        return made, replace(draft, joints=measured(draft, made)), blocked(draft, made)
-    return made, draft, []
+    made, draft = _bevelled(replace(draft, propped=bodies(solution, props)), made)
+    return made, draft, blocked(draft, made) if has_bores and draft.up is None else []
+
+
+def _bevelled(draft: Assembly, made: dict[str, Solid]) -> tuple[dict[str, Solid], Assembly]:
+    """Bodies without their edges on the bed, but those whose hinges would stop too late without them."""
+    whole = bodies(draft.solution, made)
+    done, shapes = eased(draft, whole, made, draft.shapes)
+    joints = measured(draft, done)
+    is_prompt = {joint.name: [_is_prompt(angle) for angle in joint.stop_deg] for joint in draft.joints}
+    late = [j for j in joints if any(was and not _is_prompt(a) for was, a in zip(is_prompt[j.name], j.stop_deg, strict=True))]
+    draft = replace(draft, spared=frozenset(name for joint in late for name in joint.parts))
+    # Parts that are cut have other edges on the bed afterwards.
+    if cuts_parts(draft.solution, draft.posture):
+        return made, replace(draft, joints=measured(draft, made))
+    if late:
+        done, shapes = eased(draft, whole, made, draft.shapes)
+        joints = measured(draft, done)
+    return done, replace(draft, shapes=shapes, joints=joints)
+
+
+def _is_prompt(angle: float | None) -> bool:
+    return angle is not None and angle <= PAST
 
 
 def _require_hinges(solution: FoldSolution, posture: Posture) -> None:

@@ -19,6 +19,7 @@ from foldfab.fabrication.panels import panels
 from foldfab.fabrication.plates import plate
 from foldfab.fabrication.printed import printed
 from foldfab.fabrication.shapes import union
+from foldfab.fabrication.soles import bevelled
 from foldfab.fabrication.solids import Solid
 from foldfab.folding.mechanism import frames
 from foldfab.folding.model import Chain, Thickness
@@ -36,6 +37,8 @@ TAIL = 11.0
 """How far the plate reaches behind the hinge, mm: room for the numbers."""
 RAISED, SUNK = 0.6, 0.3
 """How high the numbers stand on the plate, and how deep they are rooted in it, mm."""
+LAYER = 0.2
+"""Height of its layers, mm."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,9 +72,11 @@ def coupon(thickness: float, posture: Posture) -> Coupon:
     halves = [_half(Thickness(thickness, gap), i * -(width + SPACE), width, posture) for i, gap in enumerate(kept)]
     made = {"plate": solids.tidied(solids.union([base for base, _ in halves]))}
     made |= {f"{gap:.2f}": solids.tidied(flap) for gap, (_, flap) in zip(kept, halves, strict=True)}
+    lift = np.eye(4)
+    lift[2, 3] = -min(float(solids.bounds(solid)[0][2]) for solid in made.values())
+    made, _ = bevelled(made, {}, dict.fromkeys(made, lift), LAYER)
     _inspect(made, kept)
-    lift = np.array([0.0, 0.0, -min(float(solids.bounds(solid)[0][2]) for solid in made.values())])
-    bodies = tuple(_body(name, solid, lift) for name, solid in made.items())
+    bodies = tuple(_body(name, solid, lift[:3, 3]) for name, solid in made.items())
     return Coupon(bodies, tuple(kept), thickness, posture)
 
 

@@ -22,6 +22,8 @@ from foldfab.fabrication.model import Assembly, Body, Finding, Joint, Seam
 from foldfab.fabrication.posture import cuts_parts
 from foldfab.fabrication.room import footprint
 from foldfab.fabrication.seams import fit_of
+from foldfab.fabrication.shapes import Shape
+from foldfab.fabrication.soles import PIECE, eased
 from foldfab.fabrication.solids import Solid
 from foldfab.folding.model import Chain, FoldSolution
 from foldfab.geometry.arrays import Array
@@ -98,29 +100,38 @@ def cut_to_bed(assembly: Assembly, made: dict[str, Solid]) -> tuple[Assembly, li
         whole = Piece(made[one.name], assembly.shapes[one.name])
         if not stock.fits(whole):
             pieces, keys = cut_up(whole, stock)
-            cut[one.name] = {f"{one.name}:{i}": piece for i, piece in enumerate(pieces, 1)}
+            cut[one.name] = {f"{one.name}{PIECE}{i}": piece for i, piece in enumerate(pieces, 1)}
             seams += _seams(cut[one.name], keys, fit)
+    solid_of, shapes = _eased(assembly, made, cut)
     if not cut:
-        return assembly, fits(assembly)
-    whole_ones = {name: solid for name, solid in made.items() if name not in cut}
-    solid_of = whole_ones | {name: piece.solid for pieces in cut.values() for name, piece in pieces.items()}
+        done = replace(assembly, bodies=_bodies(assembly, solid_of, cut), shapes=shapes)
+        return done, fits(done)
     joints = [part for joint in assembly.joints for part in _shared(joint, marks[joint.name], cut, solid_of)]
     done = replace(
         assembly,
-        bodies=tuple(sorted(_bodies(assembly, cut), key=lambda b: b.name)),
+        bodies=_bodies(assembly, solid_of, cut),
         joints=tuple(sorted([*joints, *seams], key=lambda joint: joint.name)),
         poses=assembly.poses | {n: assembly.poses[part] for part, pieces in cut.items() for n in pieces},
-        shapes=assembly.shapes | {n: piece.shape for pieces in cut.values() for n, piece in pieces.items()},
+        shapes=assembly.shapes | shapes,
         pieces={part: tuple(pieces) for part, pieces in cut.items()},
     )
     return done, [*fits(done), *_hold(done, solid_of), *_told(done, fit)]
 
 
-def _bodies(assembly: Assembly, cut: dict[str, dict[str, Piece]]) -> list[Body]:
-    found = [one for one in assembly.bodies if one.name not in cut]
-    for part, pieces in cut.items():
-        found += [body(assembly.solution, name, part, piece.solid) for name, piece in pieces.items()]
-    return found
+def _eased(
+    assembly: Assembly, made: dict[str, Solid], cut: dict[str, dict[str, Piece]]
+) -> tuple[dict[str, Solid], dict[str, Shape]]:
+    """All whole parts and pieces, with their edges on the bed drawn in."""
+    pieces = {name: piece for some in cut.values() for name, piece in some.items()}
+    solid_of = {name: solid for name, solid in made.items() if name not in cut}
+    solid_of |= {name: piece.solid for name, piece in pieces.items()}
+    shapes = {name: pieces[name].shape if name in pieces else assembly.shapes[name] for name in solid_of}
+    return eased(assembly, _bodies(assembly, solid_of, cut), solid_of, shapes)
+
+
+def _bodies(assembly: Assembly, solid_of: dict[str, Solid], cut: dict[str, dict[str, Piece]]) -> tuple[Body, ...]:
+    part_of = {name: part for part, pieces in cut.items() for name in pieces}
+    return tuple(body(assembly.solution, n, part_of.get(n, n), solid_of[n]) for n in sorted(solid_of))
 
 
 def _marks(assembly: Assembly) -> Marks:

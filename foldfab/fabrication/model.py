@@ -131,6 +131,8 @@ class Assembly:
 
     propped: tuple[Body, ...] = ()
     """The bodies that are printed with a prop to be broken off, with it; sorted by name."""
+    spared: frozenset[str] = frozenset()
+    """The parts that keep their edges on the bed, because a hinge needs them to stop."""
     pieces: dict[str, tuple[str, ...]] = field(default_factory=dict)
     """By part that was cut because it is longer than the bed, the bodies that it became."""
 

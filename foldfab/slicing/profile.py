@@ -9,8 +9,8 @@ NOZZLE_MM, LAYER_MM, LINE_MM = 0.4, 0.2, LINE
 """Nozzle, layer height, and width of an extruded line."""
 CLOSING_RADIUS_MM = 0.049
 """PrusaSlicer closes gaps up to twice this when it slices; its default, stated because we measure against it."""
-ELEPHANT_FOOT_MM = 0.2
-"""By how much the first layer is drawn in, so that what is squeezed on the bed does not fuse across a gap of 0.3 mm."""
+ELEPHANT_FOOT_MM = 0.0
+"""By how much the slicer draws in the first layer: not at all, as bodies are bevelled there already (`soles.py`)."""
 SUPPORT_DEG = 40
 """Surfaces flatter than this get support. Hinge cones slope by 45°, less what their facets and layers take."""
 DENSITY = 1.24

@@ -101,7 +101,7 @@ def test_prusaslicer_fuses_what_is_too_close_and_we_notice(tmp_path: Path, gap: 
     sliced = run(file, MINI, support=False, slicer=slicer)
     assert sliced.report.bodies == 2
     found = outlines(bodies, [hinge()], layers(sliced.gcode))
-    # 20 layers of two bodies; the first layer is drawn in, and so apart in any case.
+    # 20 layers of two bodies.
     assert found.layers == 20 and found.expected == 40
     fused = [clash for clash in found.clashes if clash.kind == "fused"]
     assert (found.found, len(fused)) == ((40, 0) if is_apart else (40 - 2 * len(fused), len(fused)))

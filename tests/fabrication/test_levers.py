@@ -171,3 +171,13 @@ def tongues(here: Mount) -> list[Solid]:
 def as_solids(assembly: Assembly) -> dict[str, Solid]:
     """The bodies of an assembly, as the kernel knows them."""
     return {body.name: solids.from_mesh(body.vertices, body.faces) for body in assembly.bodies}
+
+
+def test_a_base_whose_edge_on_the_bed_stops_a_hinge_keeps_it(solution: Callable[..., FoldSolution]) -> None:
+    made = build(solution("corner", thickness=3.0), "open")
+    assert "ground" in made.spared
+    ground = next(body for body in made.bodies if body.name == "ground")
+    solid = solids.from_mesh(ground.vertices, ground.faces)
+    low = float(ground.vertices[:, 2].min())
+    assert solid.slice(low + 0.1).area() == pytest.approx(solid.slice(low + 0.5).area(), rel=1e-3)
+    assert all(angle is not None and angle <= PAST for joint in made.joints for angle in joint.stop_deg)

@@ -13,6 +13,7 @@ import numpy as np
 from foldfab.fabrication import shapes, solids
 from foldfab.fabrication.posture import HANGS, ON_BED, bed_turn
 from foldfab.fabrication.shapes import Shape
+from foldfab.fabrication.soles import DRAWN_IN
 from foldfab.fabrication.solids import Outline, Solid
 from foldfab.geometry.arrays import Array
 
@@ -24,6 +25,8 @@ TALL = 8.0
 """A part higher than this over the bed gets no prop: slicers build better towers, mm; the lowest need none."""
 ASIDE = 1.25
 """How far a prop keeps away from other parts, in clearances: what is tidied may move a little."""
+STEP = 0.2
+"""Up to where a prop is as much smaller as parts are there, mm: a first layer."""
 FAR = 1000.0
 """Beyond every print, mm."""
 
@@ -88,7 +91,8 @@ def _prop(body: Solid, low: float, others: list[Solid], gap: float) -> Solid | N
     made: list[Solid] = []
     for face in sole.decompose():
         if face.area() > NECK**2:
-            made += [_pillar(face, 0.0, low - AIR), *_necks(face, low - AIR, low)]
+            first = solids.grown(face, -DRAWN_IN)
+            made += [_pillar(first, 0.0, STEP), _pillar(face, STEP, low - AIR), *_necks(face, low - AIR, low)]
     return solids.union(made) if made else None
 
 

@@ -17,6 +17,7 @@ It is tried on the solids: the pin meets nothing open, and the tongue meets it w
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -160,10 +161,10 @@ def held_at(range_: Turn, panel: Solid, made: Lock, *, is_base_first: bool) -> f
     return None if None in found else found[0]
 
 
-def is_free(base: Solid, others: list[Solid], made: Lock) -> bool:
-    """Whether a base with its groove, and all else where it stands open, leave room for the pin and its way there."""
+def is_free(bodies: Iterable[Solid], made: Lock) -> bool:
+    """Whether bodies, the base with its groove among them, leave room for the pin and its way there where all is open."""
     pin, way = printed(made.pin), printed(made.way)
-    return all(solids.overlap(solid, piece) <= MEETS for solid in (base, *others) for piece in (pin, way))
+    return all(solids.overlap(solid, piece) <= MEETS for solid in bodies for piece in (pin, way))
 
 
 def _meets(range_: Turn, panel: Solid, pin: Solid, angle: float, is_base_first: bool) -> bool:

@@ -197,7 +197,7 @@ class Trial:
             # The room that it fills was looked for between the instants as well.
             if other != name and not self._is_apart(name, solid, other, self.made[other], in_between=False):
                 return f"meets {other}"
-        return self._unstopped(name, solid) or self._unlatched(name, solid)
+        return self._unstopped(name, solid) or self._unlatched({name: solid})
 
     def _unstopped(self, name: str, solid: Solid) -> str:
         """That a hinge of a body would stop no more, or nothing."""
@@ -209,11 +209,15 @@ class Trial:
                     return f"leaves {joint.name} without a stop"
         return ""
 
-    def _unlatched(self, name: str, solid: Solid) -> str:
-        """That a latch would not hold any more, or nothing."""
-        made = {**self.made, name: solid}
+    def _unlatched(self, changed: Mapping[str, Solid]) -> str:
+        """That a latch would not hold any more with other bodies, or nothing."""
+        made = {**self.made, **changed}
         for joint, held in self.locks.items():
-            if self._missing(made[self._base_of(joint)], held) > CLASH or self._play(joint, held, made) is None:
+            base = self._base_of(joint)
+            is_held = is_free(changed.values(), held)
+            if is_held and {*self._parts[joint]} & {*changed}:
+                is_held = self._missing(made[base], held) <= CLASH and self._play(joint, held, made) is not None
+            if not is_held:
                 return f"leaves {joint} without a latch"
         return ""
 
@@ -242,7 +246,7 @@ class Trial:
         if self._thin_sides(stop.other, base) > self._thin_sides(stop.other, fitted.changed.get(stop.other, base)):
             return None
         angle = self._play(stop.joint, held, made)
-        if angle is None:
+        if angle is None or self._unlatched({**fitted.changed, stop.other: base}):
             return None
         (start, end), into = held.ends.tolist(), held.into.tolist()
         latch = Latch(stop.other, (tuple(start), tuple(end)), tuple(into), angle, held.moment)
@@ -261,7 +265,7 @@ class Trial:
         """How far a hinge turns from open before its pin holds it, degrees; None where it does not, or has no room."""
         base = self._base_of(joint)
         panel = next(part for part in self._parts[joint] if part != base)
-        if not is_free(made[base], [solid for name, solid in made.items() if name != base], held):
+        if not is_free(made.values(), held):
             return None
         return held_at(self.turns[joint], made[panel], held, is_base_first=self._parts[joint][0] == base)
 

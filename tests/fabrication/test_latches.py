@@ -29,6 +29,7 @@ from foldfab.fabrication.latches import (
 )
 from foldfab.fabrication.model import Assembly, Joint
 from foldfab.fabrication.printed import printed
+from foldfab.fabrication.shapes import box, common, cut, union
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.stops import Stop, bolts, stops
 from foldfab.fabrication.trial import Trial
@@ -165,6 +166,24 @@ def test_what_lies_over_a_groove_leaves_no_room_for_its_pin(trial: Trial) -> Non
     far = board.translate((100.0, 0.0, 0.0))
     assert is_free([far], held)
     assert not is_free([far, board], held)
+
+
+def test_nothing_that_is_made_later_takes_a_latch_away(assembled: Callable[..., Assembly]) -> None:
+    assembly = assembled("table")
+    trial = Trial(assembly, as_solids(assembly))
+    solution = assembly.solution
+    tried = ((stop, trial.fitted(stop)) for stop in bolts(solution, solution.chains[0], 0))
+    stop, fitted, made = next((s, f, m) for s, f in tried if f is not None and (m := trial.latched(f)) is not None)
+    held = stop.lock
+    assert held is not None and made.latch.base == "top"
+    trial.take(fitted)
+    trial.lock(stop, made)
+    filled = union([trial.shapes["top"], common(held.groove, held.seats)])
+    assert trial.reshape("top", filled) == f"leaves {stop.joint} without a latch"
+    (low, high), through = solids.bounds(printed(held.seats)), np.array([0.0, 0.0, 1.0])
+    behind = box(low - through, np.array([held.ends[0, 0], *high[1:]]) + through)
+    assert trial.reshape("top", cut(trial.shapes["top"], [behind])) == f"leaves {stop.joint} without a latch"
+    assert trial.reshape("top", trial.shapes["top"]) == ""
 
 
 def test_seats_are_added_where_a_base_ends_early_unless_something_is_there(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
@@ -9,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from foldfab.fabrication.latches import FILAMENT
 from foldfab.fabrication.model import AS_READ, LEVEL, Assembly
 from foldfab.folding.model import FoldSolution, Modification
 from foldfab.geometry.arrays import Array
@@ -274,7 +276,25 @@ def _pieces(assembly: Assembly) -> str:
 
 
 def _after(assembly: Assembly) -> list[str]:
-    """How to treat the print once it is off the bed."""
+    """How to treat the print once it is off the bed, and how to hold it open."""
+    return [*_unfolding(assembly), *_latching(assembly)]
+
+
+def _latching(assembly: Assembly) -> list[str]:
+    """Which pins to cut, and where they go."""
+    latches = [joint.latch for joint in assembly.joints if joint.latch is not None]
+    lengths = Counter(f"{latch.length:.1f}" for latch in latches)
+    cut = ", ".join(f"{count} of {length} mm" for length, count in sorted(lengths.items(), key=lambda row: float(row[0])))
+    bases = ", ".join(sorted({latch.base for latch in latches}))
+    how = (
+        f"to hold it open, cut pins of {FILAMENT:g} mm filament ({cut}) and press each into the groove across the slot "
+        f"of a hinge, in the outer faces of {bases}; push them out through the slots from the inner faces to fold it"
+    )
+    return [how] if latches else []
+
+
+def _unfolding(assembly: Assembly) -> list[str]:
+    """How to get it from the bed and to move it."""
     order = "; then ".join(", ".join(step.patches) for step in assembly.solution.steps)
     if assembly.posture == "plate":
         pins = PINNED[assembly.solution.thickness.hinge]

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from foldfab.export.check_latches import check_latches
 from foldfab.export.check_solids import OVERLAP_MM3, same_volume
 from foldfab.export.frames import moved
 from foldfab.export.read_glb import pose, read_glb
@@ -63,7 +64,9 @@ def check_motion(folder: Path, stated: Stated) -> list[Row]:
     motion = Motion(solids, poses)
     checks = [_bodies, _rigid, _collide, _joints, _connected, _flat]
     checks += [_seams] if any(joint.seam for joint in stated.joints) else []
-    return [check(motion, stated) for check in checks]
+    rows = [check(motion, stated) for check in checks]
+    is_latched = any(joint.latch for joint in stated.joints)
+    return [*rows, check_latches(motion.solids, motion.poses, stated)] if is_latched else rows
 
 
 def _bodies(motion: Motion, stated: Stated) -> Row:
@@ -83,11 +86,7 @@ def _rigid(motion: Motion, stated: Stated) -> Row:
 
 
 def _collide(motion: Motion, stated: Stated) -> Row:
-    """O(FRAMES · near pairs); a pair that moves as one since it was last looked at is passed over.
-
-    Where a latch passes, its prongs give what the sheet states; rigid bodies share that.
-    """
-    gives = {frozenset(joint.parts): joint.gives for joint in stated.joints}
+    """O(FRAMES · near pairs); a pair that moves as one since it was last looked at is passed over."""
     names = sorted(motion.solids)
     looked: dict[tuple[int, int], Array] = {}
     clashes: dict[tuple[int, int], tuple[float, int]] = {}
@@ -100,8 +99,7 @@ def _collide(motion: Motion, stated: Stated) -> Row:
             looked[pair] = relative
             a, b = (motion.solids[names[number]].manifold for number in pair)
             overlap = (a ^ b.transform(relative[:3])).volume()
-            given = gives.get(frozenset((names[pair[0]], names[pair[1]])), 0.0)
-            if overlap > max(OVERLAP_MM3 + 1.1 * given, clashes.get(pair, (0.0, 0))[0]):
+            if overlap > max(OVERLAP_MM3, clashes.get(pair, (0.0, 0))[0]):
                 clashes[pair] = overlap, k
     worst = sorted(clashes.items(), key=lambda item: -item[1][0])
     texts = [f"{names[i]} and {names[j]} by {v:.1f} mm³ at {100 * k / FRAMES:.0f} %" for (i, j), (v, k) in worst]

@@ -12,6 +12,7 @@ from foldfab.export.frames import moved, sheet_poses, to_sheet
 from foldfab.export.provenance import provenance
 from foldfab.export.shell import Shell
 from foldfab.export.version import foldfab_version
+from foldfab.fabrication.latches import FILAMENT
 from foldfab.fabrication.model import Assembly, Joint, Latch, Seam
 from foldfab.fabrication.snaps import Snap, snaps
 from foldfab.folding.model import Modification
@@ -174,17 +175,20 @@ def _joint(assembly: Assembly, joint: Joint) -> dict[str, Any]:
         "inserted": joint.is_inserted,
         "stop_deg": list(joint.stop_deg),
         "stops": list(joint.stops),
-        **({} if joint.latch is None else {"latch": _latch(joint.latch)}),
+        **({} if joint.latch is None else {"latch": _latch(assembly, joint.latch)}),
         **({} if joint.seam is None else {"seam": _seam(assembly, joint.seam)}),
     }
 
 
-def _latch(latch: Latch) -> dict[str, float]:
+def _latch(assembly: Assembly, latch: Latch) -> dict[str, Any]:
     return {
+        "base": latch.base,
+        "pin_mm": FILAMENT,
+        "length_mm": _length(latch.length),
+        "ends": [_lengths(point) for point in to_sheet(assembly, np.array(latch.pin))],
+        "into": _unit(to_sheet(assembly, np.array(latch.into))),
         "holds_at_deg": _length(latch.holds_at),
         "moment_nmm": round(latch.moment, 1),
-        "flex_mm": _length(latch.flex),
-        "gives_mm3": round(latch.gives, 3),
     }
 
 

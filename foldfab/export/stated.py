@@ -10,11 +10,12 @@ from typing import Any
 from foldfab.errors import PrintFolderError
 from foldfab.geometry.arrays import Array, frozen
 
-MOST_GIVEN = 1.0
-"""More than this is no latch but a collision, mm³."""
-
 MOST_FIT = 0.5
 """More than this between two pieces is no fit, mm."""
+MOST_PIN = 5.0
+"""No pin is thicker than this, mm."""
+MOST_PLAY = 10.0
+"""A latch that lets a hinge turn further than this is none, degrees."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,6 +43,20 @@ class StatedSeam:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class StatedLatch:
+    """The pin that holds a hinge open."""
+
+    base: str
+    """The part in which it lies."""
+    width: float
+    """Its diameter, mm."""
+    ends: Array
+    """(2, 3) of its axis, mm, open posture, sheet frame."""
+    holds_at: float
+    """How far the hinge turns before it meets the pin, degrees."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class StatedJoint:
     """One hinge, or one seam."""
 
@@ -52,8 +67,7 @@ class StatedJoint:
     radius: float
     """Of its knuckles, mm."""
     range_deg: tuple[float, float]
-    gives: float = 0.0
-    """What its parts may share while a latch passes, mm³."""
+    latch: StatedLatch | None = None
     seam: StatedSeam | None = None
 
 
@@ -171,12 +185,19 @@ def _joint(row: dict[str, Any], names: set[str]) -> StatedJoint:
     if not {a, b} <= names or a == b:
         raise ValueError(f"joint {row['name']} does not join two of the parts")
     low, high = row["range_deg"]
-    gives = _number(row["latch"]["gives_mm3"]) if "latch" in row else 0.0
-    if not 0 <= gives <= MOST_GIVEN:
-        raise ValueError(f"the latch of {row['name']} would give {gives:g} mm³")
+    latch = _latch(row["latch"], (a, b)) if "latch" in row else None
     axis, radius = frozen(row["axis"], 2, 3), _number(row["radius_mm"])
     seam = _seam(row["seam"]) if "seam" in row else None
-    return StatedJoint(_text(row["name"]), (a, b), axis, radius, (_number(low), _number(high)), gives, seam)
+    return StatedJoint(_text(row["name"]), (a, b), axis, radius, (_number(low), _number(high)), latch, seam)
+
+
+def _latch(row: dict[str, Any], parts: tuple[str, str]) -> StatedLatch:
+    base, width, ends, holds_at = row["base"], _number(row["pin_mm"]), frozen(row["ends"], 2, 3), row["holds_at_deg"]
+    if base not in parts or not 0 < width <= MOST_PIN or not bool((ends[0] != ends[1]).any()):
+        raise ValueError(f"a latch whose pin of {width:g} mm has no ends, or lies in neither part of its joint")
+    if not 0 <= _number(holds_at) <= MOST_PLAY:
+        raise ValueError(f"a latch that holds at {holds_at:g}°")
+    return StatedLatch(base, width, ends, float(holds_at))
 
 
 def _seam(row: dict[str, Any]) -> StatedSeam:

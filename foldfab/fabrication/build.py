@@ -74,7 +74,7 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
     findings += [*told, *more]
     draft = replace(draft, bodies=bodies(solution, made))
     findings += [*snap_findings(solution), *_notes(solution)]
-    findings += inspect(draft, made, lambda share: tell("inspection", share), held.gives)
+    findings += inspect(draft, made, lambda share: tell("inspection", share))
     _require_sound(findings)
     draft, more = cut_to_bed(draft, made)
     _require_sound(more)

@@ -8,8 +8,7 @@ relative pose has changed, so a fold costs as many booleans as there are moving 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Mapping
-from types import MappingProxyType
+from collections.abc import Callable
 
 import numpy as np
 
@@ -46,19 +45,14 @@ def inspect(
     assembly: Assembly,
     made: dict[str, Solid],
     tell: Callable[[float], None],
-    gives: Mapping[str, list[Solid]] = MappingProxyType({}),
 ) -> list[Finding]:
-    """All findings about the assembly; fatal where it would not print or not fold.
-
-    `gives` is what of a panel gives way while it passes a latch: it is not there while the fold is tried.
-    """
+    """All findings about the assembly; fatal where it would not print or not fold."""
     findings = _soundness(made)
     # What is cut is looked at again in pieces.
     findings += [] if cuts_parts(assembly.solution, assembly.posture) else fits(assembly)
     if not any(f.is_fatal for f in findings):
         findings += _gaps(assembly, made)
-        folding = {name: solids.cut(solid, gives.get(name, [])) for name, solid in made.items()}
-        findings += _fold(assembly, folding, tell)
+        findings += _fold(assembly, made, tell)
         findings += _latches(assembly)
         findings += _axes(assembly)
         findings += _stops(assembly, made)
@@ -250,8 +244,8 @@ def _latches(assembly: Assembly) -> list[Finding]:
     if not assembly.solution.scaffold.recipe.print.latch:
         return []
     free = [joint.name for joint in assembly.joints if not joint.is_inserted and joint.latch is None]
-    told = listing(free)
-    return [Finding("latch", f"no room for a latch at {told}; wider or thicker parts have it")] if free else []
+    advice = "other postures have it" if assembly.posture == "edge" else "wider or thicker parts have it"
+    return [Finding("latch", f"no room for a lock pin at {listing(free)}; {advice}")] if free else []
 
 
 def listing(names: list[str]) -> str:

@@ -1,103 +1,172 @@
-"""A detent that holds a base hinge open: ridges in the slot of a stop's tongue, behind which its two prongs snap.
+"""A lock pin that holds a base hinge open: 1.75 mm filament, pressed into a groove across the slot of a tongue.
 
-A slit parts the tongue into two prongs that give by `FLEX` each while it passes. The moment that holds the hinge is
-that of two cantilevers pressed in by `FLEX` over a flank of 45°: M = 2 F r with F = 3 E I FLEX/L³.
-It is tried on the solids: it meets the ridges where it leaves its play, and with the prongs pressed in it passes.
+The groove runs along the hinge in the outer face of the base, behind the tongue, and on into the plate on either side of
+its slot. With the pin in it the tongue cannot swing back, without it the hinge is free; nothing gives as it turns. The
+mouth is narrower than the filament, which snaps in; it is pushed out again through the slot, from the inner face.
+
+The hinge holds up to the least of four moments about its axis, with the tongue's w × t, the pin's arm r and diameter d:
+
+- the pin is sheared at both walls of the slot, F = 2 σ/√3 · πd²/4 (von Mises), or
+- bends between them under an even load, clamped at both: F = 12/L · σ πd³/32 over L = w + 2g (Roark, table 8.1), or
+- is pressed into the plastic of its seats, F = 2 σ d · `SEAT`: each M = F r;
+- the tongue breaks across its layers where it leaves its knuckle: M = τ w t²/6.
+
+σ and τ are what FDM PLA yields at along its lines and breaks at across its layers by Stratasys' data sheet.
+It is tried on the solids: the pin meets nothing open, and the tongue meets it within a few degrees.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from foldfab.fabrication import solids
-from foldfab.fabrication.model import Latch
 from foldfab.fabrication.printed import printed
 from foldfab.fabrication.shapes import Shape, box, placed, rod, union
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.turning import MEETS, Turn
+from foldfab.geometry.arrays import Array
 
-FLEX = 0.15
-"""What each prong gives, mm: 1.5 % of strain at its root, within what PLA takes."""
-PRONG = 1.2
-"""Thickness of a prong, mm."""
-SLIT = 0.5
-"""Least width of the slit, mm."""
-RIDGE = 0.7
-"""Radius of a ridge, mm."""
-TALL = 1.6
-"""Height of a ridge, at the tip of the tongue, mm."""
-ROOT_SHARE = 0.3
-"""Where the slit ends, as a share of K below the axis."""
-STIFFNESS = 2300.0
-"""Young's modulus of printed PLA, N/mm²; the solid plastic has half as much again."""
-SPARE = 0.03
-"""How much further than `FLEX` a prong is pressed in to pass, mm: rounding."""
-HOLDS_WITHIN = 12.0
-"""A latch that lets a hinge turn further than this before it meets the ridges is none, degrees."""
-PASSED = 40.0
-"""Well past the ridges, degrees."""
-STEP = 0.5
+FILAMENT = 1.75
+"""Diameter of a pin, mm."""
+SNAP = 0.15
+"""How much narrower than the filament the mouth of a groove is, mm."""
+LEAST_FIT = 0.1
+"""What is between a pin and its tongue is half the clearance, and at least this, mm; around the pin there is half of it."""
+SUNK = 0.1
+"""How far a groove ends below the face that it opens, without its mouth, mm."""
+SEAT = 2.4
+"""How much of a pin lies in the base at either end, mm."""
+END = 0.8
+"""What is left of the base beyond an end of a pin, mm."""
+WALL = 1.6
+"""What is left of it behind a pin, mm."""
+SKIN = 0.8
+"""What is left of it over a pin, mm: four layers."""
+BITE = 0.3
+"""A tongue reaches over so much of a pin that it would still be held by one thinner by twice this, mm."""
+OUT = 10.0
+"""How far the way of a pin into its groove has to be free, mm."""
+LEAST_LEAN = np.radians(-10.0)
+"""A tongue that leans further to the front would press its pin out of the mouth."""
+ALONG, ACROSS = 45.0, 26.0
+"""What printed PLA bears along its lines and across its layers, N/mm²."""
+HOLDS_WITHIN = 8.0
+"""A latch that lets a hinge turn further than this is none, degrees."""
+STEP = 0.25
 """Degrees between the angles that are tried."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Detent:
-    """The pieces of one latch, in the frame of the open panel or, once placed, of the print."""
+class Lock:
+    """The pieces of one latch, in the frame of its mount or, once placed, of the print."""
 
-    ridges: Shape
-    """Added to the base."""
-    slit: Shape
-    """Cut from the panel."""
-    pressed: Shape
-    """What of the panel gives way while it passes."""
+    pin: Shape
+    pushed: Shape
+    """The pin against the far wall of its groove."""
+    core: Shape
+    """Its inner part there, which the tongue has to meet as well."""
+    groove: Shape
+    """Cut from the base."""
+    seats: Shape
+    """What has to be of the base, for the pin to lie in."""
+    way: Shape
+    """Outside of the base, where the pin comes from."""
+    ends: Array
+    """(2, 3) of the pin's axis, mm."""
+    into: Array
+    """(3,) the direction in which it is pressed."""
     moment: float
-    """N·mm that hold the hinge."""
+    """N·mm that it holds."""
 
-    def at(self, origin: np.ndarray, axes: np.ndarray) -> Detent:
+    def at(self, origin: Array, axes: Array) -> Lock:
         """The same in another place."""
-        ridges, slit, pressed = (placed(s, origin, axes) for s in (self.ridges, self.slit, self.pressed))
-        return Detent(ridges, slit, pressed, self.moment)
+        shapes = (self.pin, self.pushed, self.core, self.groove, self.seats, self.way)
+        return Lock(*(placed(s, origin, axes) for s in shapes), self.ends @ axes + origin, self.into @ axes, self.moment)
 
 
-def detent(half: float, front: float, reach: float, gap: float, low: float, high: float) -> Detent | None:
-    """The latch of a tongue from -half to `front` across, `low` to `high` along the axis and down to -reach; mm.
+@dataclass(frozen=True, slots=True)
+class Tongue:
+    """What a pin is to hold: mm in the frame of its mount, where the outer face of the base is at -depth."""
 
-    None where the tongue is too narrow for two prongs.
+    lean: float
+    """From upright to where its panel folds, radians."""
+    back: float
+    """From its middle to its back, behind which the pin lies."""
+    thick: float
+    reach: float
+    """From the axis to its tip."""
+    low: float
+    high: float
+    """Along the axis."""
+
+
+def lock(tongue: Tongue, depth: float, plate: float, gap: float) -> Lock | None:
+    """The latch of a tongue in a base whose outer face is `depth` below the axis and whose plate is so thick; mm.
+
+    None where the plate is too thin for the groove, or the tongue does not reach as far as the pin.
     """
-    if high - low < 2 * PRONG + SLIT:
+    fit, radius = max(gap / 2, LEAST_FIT), FILAMENT / 2
+    wide = radius + fit / 2
+    sin, cos = float(np.sin(tongue.lean)), float(np.cos(tongue.lean))
+    behind = tongue.back + fit + radius
+    # As close to the face as may be, but where the tongue still reaches past the middle of the pin.
+    z = max(wide + SUNK - depth, behind * sin - (tongue.reach - BITE) * cos)
+    if tongue.lean < LEAST_LEAN or z + wide + SKIN > plate - depth:
         return None
-    root = 2 * half * ROOT_SHARE
-    middle = -half - gap - RIDGE
-    upright = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
-    ridges = [
-        placed(rod(RIDGE, -reach, TALL - reach, 0.0, 0.0), np.array([middle, y, 0.0]), upright)
-        for y in (low + FLEX - RIDGE, high - FLEX + RIDGE)
-    ]
-    slit = box((-2 * half, low + PRONG, -reach - 1.0), (2 * half, high - PRONG, -root))
-    give = FLEX + SPARE
-    skins = [
-        box((-2 * half, a, -reach - 1.0), (2 * half, b, -root))
-        for a, b in ((low - 1, low + give), (high - give, high + 1))
-    ]
-    arm, lever = reach - TALL / 2, reach - TALL / 2 - root
-    stiff = (half + front) * PRONG**3 / 12
-    force = 3 * STIFFNESS * stiff * FLEX / lever**3
-    return Detent(union(ridges), slit, union(skins), 2 * force * arm)
+    arm = (behind * sin - z) / cos
+    x = -behind * cos - arm * sin
+    low, high = tongue.low - gap - SEAT, tongue.high + gap + SEAT
+    # The tongue pushes along its own normal.
+    far_x, far_z = x - fit / 2 * cos, z + fit / 2 * sin
+    mouth = radius - SNAP / 2
+    groove = union(
+        [rod(wide, low, high, x, z, is_hole=True), box((x - mouth, low, -depth - SUNK), (x + mouth, high, z))]
+    )
+    behind_it, top = x - wide - WALL, plate - depth
+    seats = union(
+        [
+            box((behind_it, low - END, -depth), (0.0, low + SEAT, top)),
+            box((behind_it, high - SEAT, -depth), (0.0, high + END, top)),
+        ]
+    )
+    return Lock(
+        pin=rod(radius, low, high, x, z, is_hole=True),
+        pushed=rod(radius, low, high, far_x, far_z),
+        core=rod(radius - BITE, low, high, far_x, far_z),
+        groove=groove,
+        seats=seats,
+        way=box((x - radius, low, -depth - OUT), (x + radius, high, -depth - SUNK)),
+        ends=np.array([[x, low, z], [x, high, z]]),
+        into=np.array([0.0, 0.0, 1.0]),
+        moment=moment(tongue.high - tongue.low, tongue.thick, arm, gap),
+    )
 
 
-def tried(range_: Turn, base: Solid, panel: Solid, made: Detent, *, is_base_first: bool) -> Latch | None:
-    """What a latch does on the solids; None where it does not hold, or does not pass with its prongs pressed in."""
-    pressed = solids.cut(panel, [printed(made.pressed)])
-    angles = np.arange(STEP, PASSED + STEP, STEP)
-    shared = [_shared(range_, base, panel, angle, is_base_first) for angle in angles]
-    held = next((float(a) for a, s in zip(angles, shared, strict=True) if s > MEETS and a <= HOLDS_WITHIN), None)
-    is_free = all(_shared(range_, base, pressed, angle, is_base_first) <= MEETS for angle in angles)
-    return Latch(held, made.moment, FLEX, max(shared)) if held is not None and is_free else None
+def moment(width: float, thick: float, arm: float, gap: float) -> float:
+    """What a pin holds at `arm` from the axis, behind a tongue `width` × `thick` in a slot with a gap beside it; N·mm."""
+    shear = 2 * ALONG / np.sqrt(3) * np.pi * FILAMENT**2 / 4
+    bend = 12 / (width + 2 * gap) * ALONG * np.pi * FILAMENT**3 / 32
+    pressed = 2 * ALONG * FILAMENT * SEAT
+    return float(min(min(shear, bend, pressed) * arm, ACROSS * width * thick**2 / 6))
 
 
-def _shared(range_: Turn, base: Solid, panel: Solid, angle: float, is_base_first: bool) -> float:
-    """Shared volume when the hinge is turned by an angle from its open end towards its folded one, mm³."""
-    first, second = (base, panel) if is_base_first else (panel, base)
-    return solids.overlap(first, solids.moved(second, range_.past(-angle, is_folded=False)))
+def held_at(range_: Turn, panel: Solid, made: Lock, *, is_base_first: bool) -> float | None:
+    """How far a hinge turns from open before its tongue meets the pin, degrees; None where it passes it."""
+    pins = [printed(made.pushed), printed(made.core)]
+    angles = np.arange(STEP, HOLDS_WITHIN + STEP, STEP)
+    found = [next((float(a) for a in angles if _meets(range_, panel, p, a, is_base_first)), None) for p in pins]
+    return None if None in found else found[0]
+
+
+def is_free(bodies: Iterable[Solid], made: Lock) -> bool:
+    """Whether bodies, the base with its groove among them, leave room for the pin and its way there where all is open."""
+    pin, way = printed(made.pin), printed(made.way)
+    return all(solids.overlap(solid, piece) <= MEETS for solid in bodies for piece in (pin, way))
+
+
+def _meets(range_: Turn, panel: Solid, pin: Solid, angle: float, is_base_first: bool) -> bool:
+    first, second = (pin, panel) if is_base_first else (panel, pin)
+    return solids.overlap(first, solids.moved(second, range_.past(-angle, is_folded=False))) > MEETS

@@ -20,8 +20,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from foldfab.fabrication.hinges import Mark
-from foldfab.fabrication.latches import detent
-from foldfab.fabrication.mounts import NARROWEST, WIDEST, Mount, Stop, leaning, leant, spots, within
+from foldfab.fabrication.latches import END, SEAT, Tongue, lock
+from foldfab.fabrication.mounts import NARROWEST, WALL, WIDEST, Mount, Stop, leant, spots, within
 from foldfab.fabrication.relief import STEEP
 from foldfab.fabrication.shapes import Shape, box, cut, placed, prism, union
 from foldfab.fabrication.walls import LINE
@@ -41,8 +41,6 @@ OPEN = 0.1
 """How far a slot is cut beyond the far face of its base, mm; another panel may fold there."""
 SKIN = 0.8
 """Less than this below a slot is not left standing, mm."""
-HOLDING = 2.0
-"""How much of a lip there is beside a slot with the ridges of a latch, mm."""
 FAR = 1000.0
 """Beyond everything, mm."""
 EDGE = 2 * LINE
@@ -60,15 +58,20 @@ def levers(mount: Mount, *, is_latched: bool) -> Iterator[Stop]:
     """What stops it open with faces that are a clearance apart, best first; `is_latched` if it is to be held there."""
     is_long = _room_below(mount, mount.lean) >= _lever(mount)
     if is_long:
-        yield from _tongues(mount, mount.lean)
+        yield from _tongues(mount, mount.lean, is_latched=is_latched)
     lean = _long(mount)
     if lean is not None:
-        yield from _tongues(mount, lean)
-        yield from _tongues(mount, lean, lip=HOLDING if is_latched else 0.0)
+        yield from _tongues(mount, lean, is_latched=is_latched)
+        yield from _tongues(mount, lean, is_latched=is_latched, has_lip=True)
     yield from _arms(mount)
     if not is_long:
-        yield from _tongues(mount, mount.lean)
+        yield from _tongues(mount, mount.lean, is_latched=is_latched)
     yield from _posts(mount)
+
+
+def bolts(mount: Mount) -> Iterator[Stop]:
+    """Tongues along the panel that a pin can hold, whether or not they stop it in time."""
+    yield from (stop for stop in _tongues(mount, mount.lean, is_latched=True) if stop.lock is not None)
 
 
 def heels(mount: Mount) -> Iterator[Stop]:
@@ -138,30 +141,31 @@ def _long(mount: Mount) -> float | None:
     return float(np.arctan2(front, _lever(mount)) + np.arccos(deepest / reach)) if deepest < reach else None
 
 
-def _tongues(mount: Mount, lean: float, *, lip: float | None = None) -> Iterator[Stop]:
+def _tongues(mount: Mount, lean: float, *, is_latched: bool, has_lip: bool = False) -> Iterator[Stop]:
     gap, (back, front) = mount.thickness.gap, _sides(mount, lean)
     close = CLOSE * gap
-    reach = min(close / np.sin(AIM), _room_below(mount, lean))
+    # What a pin is to hold has to reach to the outer face of its base.
+    reach = _room_below(mount, lean) if is_latched else min(close / np.sin(AIM), _room_below(mount, lean))
     sweep = float(np.hypot(mount.thickness.panel / 2, reach)) + gap
     is_through = mount.depth - (reach + gap) * np.cos(lean) < SKIN
     bottom = -FAR if is_through else -(reach + gap)
     top = sweep * max(0.0, float(np.sin(-lean)))
     # A slot that ends close to an edge of its base is opened there, because the wall beyond it would be too thin.
-    for spare, (low, high) in itertools.product((0.0, EDGE), within(mount.marks.follower, gap)):
+    wall = SEAT + END if is_latched else WALL
+    for spare, (low, high) in itertools.product((0.0, EDGE), within(mount.marks.follower, gap, wall)):
         # Seen along what leans, corners are not equally deep.
         slot = leant(box((-sweep - spare, low - gap, bottom), (front + close, high + gap, top)), lean)
         slot = cut(slot, [_below(mount.depth + OPEN)]) if is_through else slot
         added = cut(leant(box((-back, low, -reach), (front, high, 0.0)), lean), [_below(mount.depth - LIFT)])
-        holding = detent(back, front, reach, gap, low, high)
-        holding = holding and holding.at(np.zeros(3), leaning(lean))
-        end = None if lip is None else _lip(mount, reach * float(np.sin(lean)), (low, high), lip)
-        yield Stop(mount.joint, "tongue", False, mount.panel, added, mount.base, end, slot, holding)
+        tongue = Tongue(lean, back, back + front, reach, low, high)
+        held = lock(tongue, mount.depth, mount.plate, gap) if is_latched else None
+        end = _lip(mount, reach * float(np.sin(lean)), (low, high)) if has_lip else None
+        yield Stop(mount.joint, "tongue", False, mount.panel, added, mount.base, end, slot, held)
 
 
-def _lip(mount: Mount, reach: float, span: Mark, beside: float) -> Shape:
-    """What a base is given to reach as far as a tongue, and what there is beside its slot, mm."""
-    low, high = span[0] - beside, span[1] + beside
-    return box((-reach - beside, low, -mount.depth), (0.0, high, -mount.thickness.axis_height))
+def _lip(mount: Mount, reach: float, span: Mark) -> Shape:
+    """What a base is given to reach as far as a tongue, mm."""
+    return box((-reach, span[0], -mount.depth), (0.0, span[1], -mount.thickness.axis_height))
 
 
 def _arms(mount: Mount) -> Iterator[Stop]:

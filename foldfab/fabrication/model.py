@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -37,16 +38,23 @@ class Body:
 
 @dataclass(frozen=True, slots=True)
 class Latch:
-    """What holds a hinge in its open place."""
+    """What holds a hinge in its open place: a pin of filament in a groove of its base."""
 
+    base: str
+    """The body that has the groove."""
+    pin: tuple[Point, Point]
+    """The ends of the pin's axis, open posture, canonical frame, mm."""
+    into: Point
+    """Unit vector in which it is pressed into its groove."""
     holds_at: float
-    """How far it turns towards folded before the latch holds it, degrees."""
+    """How far the hinge turns towards folded before the pin holds it, degrees."""
     moment: float
     """Up to which it holds, N·mm: a force times its arm from the axis."""
-    flex: float
-    """By how much its prongs give to let go, mm."""
-    gives: float
-    """What the halves share at most while it passes, as rigid bodies, mm³."""
+
+    @property
+    def length(self) -> float:
+        """Of the pin, mm."""
+        return math.dist(*self.pin)
 
 
 @dataclass(frozen=True, slots=True)

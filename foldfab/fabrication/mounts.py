@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from foldfab.fabrication.hinges import Knuckles, Mark, knuckles
-from foldfab.fabrication.latches import Detent
+from foldfab.fabrication.latches import Lock
 from foldfab.fabrication.plates import axis_of
 from foldfab.fabrication.shapes import Shape, placed
 from foldfab.folding.anatomy import faces
@@ -46,7 +46,7 @@ class Stop:
     """What the other body is given first, where it ends too early."""
     cut: Shape | None = None
     """What is taken from the other body."""
-    detent: Detent | None = None
+    lock: Lock | None = None
     """What could hold it open besides."""
 
 
@@ -68,15 +68,15 @@ class Mount:
     """Of the hinge."""
     depth: float
     """From the axis to the far face of the base, mm."""
+    plate: float
+    """Thickness of the base below the hinge, mm."""
     thickness: Thickness
 
     def placed(self, stop: Stop) -> Stop:
         """A stop in this frame, in the frame of the print."""
         added, lip, cut = (s and placed(s, self.origin, self.frame) for s in (stop.added, stop.lip, stop.cut))
         assert added is not None
-        return replace(
-            stop, added=added, lip=lip, cut=cut, detent=stop.detent and stop.detent.at(self.origin, self.frame)
-        )
+        return replace(stop, added=added, lip=lip, cut=cut, lock=stop.lock and stop.lock.at(self.origin, self.frame))
 
 
 def names(chain: Chain, hinge: int) -> tuple[str, str, str]:
@@ -101,9 +101,11 @@ def mount(solution: FoldSolution, chain: Chain, hinge: int) -> Mount:
     marks = marks if way > 0 else marks.mirrored
     low, high = sorted(way * float(end) for end in chain.hinge_spans[hinge])
     face, own = faces(base, thickness), thickness.of(chain.panel)
-    depth = own.axis_height + chain.pads[1 if is_far else 0] + face.top - face.bottom
+    pad, plate = chain.pads[1 if is_far else 0], face.top - face.bottom
+    depth = own.axis_height + pad + plate
     lean = float(open_) * side * (-1.0 if is_far else 1.0)
-    return Mount(name, *parts, axis_of(chain, 1 if is_far else 0), frame, lean, marks, (low, high), depth, own)
+    axis = axis_of(chain, 1 if is_far else 0)
+    return Mount(name, *parts, axis, frame, lean, marks, (low, high), depth, plate + min(pad, 0.0), own)
 
 
 def leant(solid: Shape, lean: float) -> Shape:
@@ -117,12 +119,15 @@ def leaning(lean: float) -> Array:
     return np.array([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
 
 
-def within(marks: tuple[Mark, ...], gap: float) -> Iterator[Mark]:
-    """Places within knuckles, the widest first: at either end of each, for another chain may want one, then amid."""
+def within(marks: tuple[Mark, ...], gap: float, wall: float = WALL) -> Iterator[Mark]:
+    """Places within knuckles, the widest first: at either end of each, for another chain may want one, then amid.
+
+    Between the slots of two there is at least `wall`, mm.
+    """
     middle = (marks[0][0] + marks[-1][1]) / 2
     for low, high in sorted(marks, key=lambda m: (-round(m[1] - m[0], 6), abs(sum(m) / 2 - middle), m)):
         room = high - low - 2 * INSET
-        width = min((room - 2 * gap - WALL) / 2, WIDEST)
+        width = min((room - 2 * gap - wall) / 2, WIDEST)
         if width >= SHARED:
             yield low + INSET, low + INSET + width
             yield high - INSET - width, high - INSET

@@ -46,7 +46,7 @@ def own_shapes(draft: Assembly, held: Stopped, ramps: Mapping[str, list[Shape]])
     wanted = [p for p in places(draft.solution) if any(is_own(scaffold, part) for part in _parts(scaffold, p))]
     if not wanted:
         return held, []
-    trial, before = Trial(replace(draft, shapes=held.shapes), held.made, ramps, held.gives), _height(draft, held.made)
+    trial, before = Trial(replace(draft, shapes=held.shapes), held.made, ramps, held.locks), _height(draft, held.made)
     findings = []
     for place in sorted(wanted, key=lambda p: (-round(held.made[p.name].volume(), 3), p.name)):
         findings += _dressed(trial, place, draft.shapes[place.name], held.changes[place.name])

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
+from foldfab.fabrication.latches import Lock
 from foldfab.fabrication.model import Assembly, Joint, Latch
 from foldfab.fabrication.mounts import Stop
 from foldfab.fabrication.shapes import Shape
 from foldfab.fabrication.solids import Solid
-from foldfab.fabrication.stops import rests, stops
+from foldfab.fabrication.stops import bolts, rests, stops
 from foldfab.fabrication.trial import Change, Fitted, Trial
 from foldfab.folding.model import Chain
 
@@ -23,8 +24,8 @@ class Stopped:
     """What each body is made of."""
     joints: tuple[Joint, ...]
     """With what each reaches."""
-    gives: dict[str, list[Solid]]
-    """By panel, what of it gives way while it passes its latches."""
+    locks: dict[str, Lock]
+    """By joint, the latch that it has."""
     changes: dict[str, list[Change]]
     """By body, what stops and latches made of it."""
 
@@ -36,8 +37,7 @@ def stopped(assembly: Assembly, made: dict[str, Solid], ramps: Mapping[str, list
     """
     trial = Trial(assembly, made, ramps)
     taken: dict[str, tuple[str, ...]] = {joint.name: () for joint in assembly.joints}
-    latches: dict[str, Latch | None] = {}
-    is_latched = assembly.solution.scaffold.recipe.print.latch
+    made_stops: dict[str, Fitted] = {}
     for chain, hinge, name in _hinges(assembly):
         ends = stops(assembly.solution, chain, hinge, in_open=assembly.posture in ("open", "plate"))
         ways = ((False, ends), (True, rests(assembly.solution, chain, hinge)))
@@ -50,9 +50,36 @@ def stopped(assembly: Assembly, made: dict[str, Solid], ramps: Mapping[str, list
             if best is not None:
                 trial.take(best)
                 taken[name] = (*taken[name], best.stop.kind)
-                latches |= {name: trial.latch(best.stop)} if is_latched and best.stop.detent else {}
+                made_stops |= {} if is_folded else {name: best}
+    latches = _latches(assembly, trial, made_stops)
     joints = tuple(replace(j, stops=taken[j.name], latch=latches.get(j.name)) for j in reached(trial, assembly.joints))
-    return Stopped(trial.made, trial.shapes, joints, trial.gives, trial.changes)
+    return Stopped(trial.made, trial.shapes, joints, trial.locks, trial.changes)
+
+
+def _latches(assembly: Assembly, trial: Trial, made: Mapping[str, Fitted]) -> dict[str, Latch]:
+    """Latches by joint, where they are asked for and have room: at the tongue that stops a hinge, or at one more.
+
+    They come last, so that no other stop takes what holds them.
+    """
+    found: dict[str, Latch] = {}
+    if not assembly.solution.scaffold.recipe.print.latch or assembly.posture == "edge":
+        return found
+    for chain, hinge, name in _hinges(assembly):
+        if name in made:
+            held = trial.latched(replace(made[name], changed={}))
+            if held is not None:
+                trial.lock(made[name].stop, held)
+                found[name] = held.latch
+                continue
+        for stop in bolts(assembly.solution, chain, hinge):
+            fitted = trial.fitted(stop)
+            held = trial.latched(fitted) if fitted is not None and trial.has_room(fitted) else None
+            if fitted is not None and held is not None:
+                trial.take(fitted)
+                trial.lock(stop, held)
+                found[name] = held.latch
+                break
+    return found
 
 
 def measured(assembly: Assembly, made: dict[str, Solid]) -> tuple[Joint, ...]:

@@ -16,6 +16,7 @@ A stop is tried on the solids (`trial`) before it is made: there may be no room 
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 
 import numpy as np
@@ -46,10 +47,18 @@ def stops(solution: FoldSolution, chain: Chain, hinge: int, *, in_open: bool) ->
         return
     here = mount(solution, chain, hinge)
     is_latched = solution.scaffold.recipe.print.latch
-    for stop in () if in_open or is_latched else levers.heels(here):
+    heels, others = () if in_open else levers.heels(here), levers.levers(here, is_latched=is_latched)
+    # A tongue can be held by a pin, a heel cannot.
+    for stop in itertools.chain(others, heels) if is_latched else itertools.chain(heels, others):
         yield here.placed(stop)
-    for stop in levers.levers(here, is_latched=is_latched):
-        yield here.placed(stop)
+
+
+def bolts(solution: FoldSolution, chain: Chain, hinge: int) -> Iterator[Stop]:
+    """The tongues that a pin could hold a hinge by, beside the one that stops it; none at an inserted hinge."""
+    if hinge == 0 or hinge == len(chain.lengths):
+        here = mount(solution, chain, hinge)
+        for stop in levers.bolts(here):
+            yield here.placed(stop)
 
 
 def rests(solution: FoldSolution, chain: Chain, hinge: int, up: Array | None = None) -> Iterator[Stop]:

@@ -16,7 +16,7 @@ import numpy as np
 from foldfab.fabrication import solids
 from foldfab.fabrication.hinges import knuckles
 from foldfab.fabrication.inspect import CLASH, GAP_SHARE, box_corners, instants
-from foldfab.fabrication.latches import tried
+from foldfab.fabrication.latches import Lock, held_at, is_free
 from foldfab.fabrication.model import Assembly, Joint, Latch
 from foldfab.fabrication.mounts import Stop
 from foldfab.fabrication.passing import Passage, seen_from
@@ -60,6 +60,16 @@ class Fitted:
     pockets: dict[str, Shape]
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Latched:
+    """What a pin that holds a hinge makes of its base, beside the stop that has the tongue."""
+
+    base: Solid
+    needs_seats: bool
+    """Whether the base has to be given the seats of the pin."""
+    latch: Latch
+
+
 class Trial:
     """The bodies of a print as they stand, to try pieces on."""
 
@@ -68,9 +78,9 @@ class Trial:
         assembly: Assembly,
         made: dict[str, Solid],
         ramps: Mapping[str, list[Shape]] = MappingProxyType({}),
-        gives: Mapping[str, list[Solid]] = MappingProxyType({}),
+        locks: Mapping[str, Lock] = MappingProxyType({}),
     ) -> None:
-        """`ramps` is what will be cut from bodies once they have their stops, `gives` what gives way already."""
+        """`ramps` is what will be cut from bodies once they have their stops, `locks` by joint the latches they have."""
         self.assembly, self.made, self.shapes = assembly, made, dict(assembly.shapes)
         self._plain = made
         self._passage = Passage(assembly.solution, instants(assembly))
@@ -83,9 +93,8 @@ class Trial:
         self._planes = {place.name: place.plane for place in places(assembly.solution)}
         self.turns = {j.name: turn(j, *(self.poses[p] for p in j.parts)) for j in assembly.joints}
         self._ramps = {name: [printed(ramp) for ramp in some] for name, some in ramps.items()}
-        self.gives = {name: list(some) for name, some in gives.items()}
-        """By panel, what of it gives way while it passes its latches."""
-        self._ridges: dict[str, list[tuple[Array, Array]]] = {}
+        self.locks = dict(locks)
+        """By joint, the latch that it has."""
         self.changes: dict[str, list[Change]] = {name: [] for name in made}
         """By body, what stops and latches made of it, in their order."""
         self._parts = {j.name: j.parts for j in assembly.joints}
@@ -184,13 +193,11 @@ class Trial:
             return "has walls thinner than a line"
         if not self._fits(name, solid):
             return "does not fit the bed"
-        rigid = solids.cut(solid, self.gives.get(name, []))
         for other in self.made:
-            rest = solids.cut(self.made[other], self.gives.get(other, []))
             # The room that it fills was looked for between the instants as well.
-            if other != name and not self._is_apart(name, rigid, other, rest, in_between=False):
+            if other != name and not self._is_apart(name, solid, other, self.made[other], in_between=False):
                 return f"meets {other}"
-        return self._unstopped(name, solid)
+        return self._unstopped(name, solid) or self._unlatched({name: solid})
 
     def _unstopped(self, name: str, solid: Solid) -> str:
         """That a hinge of a body would stop no more, or nothing."""
@@ -202,30 +209,80 @@ class Trial:
                     return f"leaves {joint.name} without a stop"
         return ""
 
+    def _unlatched(self, changed: Mapping[str, Solid]) -> str:
+        """That a latch would not hold any more with other bodies, or nothing."""
+        made = {**self.made, **changed}
+        for joint, held in self.locks.items():
+            base = self._base_of(joint)
+            is_held = is_free(changed.values(), held)
+            if is_held and {*self._parts[joint]} & {*changed}:
+                is_held = self._missing(made[base], held) <= CLASH and self._play(joint, held, made) is not None
+            if not is_held:
+                return f"leaves {joint} without a latch"
+        return ""
+
     def hinges(self, name: str) -> list[Array]:
-        """The corners (8, 3) of all that a pocket in a body has to leave: knuckles, feet, and ridges of latches."""
+        """The corners (8, 3) of all that a pocket in a body has to leave: knuckles and feet."""
         boxes = [(low, high) for base, _, low, high in self._feet if base == name]
         boxes += [(j.axis.min(0) - j.radius, j.axis.max(0) + j.radius) for j in self._hinges_of(name)]
-        boxes += self._ridges.get(name, [])
         return [box_corners(low, high) for low, high in boxes]
 
-    def latch(self, stop: Stop) -> Latch | None:
-        """Makes the latch of a stop that is made, where it holds and lets go."""
-        if stop.detent is None:
+    def latched(self, fitted: Fitted) -> Latched | None:
+        """What a pin makes of the base of a stop, made or not; None where it has no room or does not hold."""
+        stop = fitted.stop
+        held, made = stop.lock, {**self.made, **fitted.changed}
+        if held is None:
             return None
-        panel = solids.tidied(solids.cut(self.made[stop.body], [printed(stop.detent.slit)]))
-        base = solids.tidied(solids.union([self.made[stop.other], printed(stop.detent.ridges)]))
-        if not all(solids.pieces(s) == 1 and solids.stays_closed(s) for s in (panel, base)):
+        base = made[stop.other]
+        needs_seats = self._missing(base, held) > CLASH
+        if needs_seats:
+            if not self._has_room_for_seats(stop, held, made):
+                return None
+            base = solids.union([base, printed(held.seats)])
+        base = solids.tidied(solids.cut(base, [printed(held.groove)]))
+        made[stop.other] = base
+        if solids.pieces(base) != 1 or not solids.stays_closed(base) or self._unstopped(stop.other, base):
             return None
-        is_base_first = self._parts[stop.joint][0] == stop.other
-        found = tried(self.turns[stop.joint], base, panel, stop.detent, is_base_first=is_base_first)
-        if found is not None:
-            self.made = {**self.made, stop.body: panel, stop.other: base}
-            self._change(stop.body, Change(False, stop.detent.slit))
-            self._change(stop.other, Change(True, stop.detent.ridges))
-            self.gives.setdefault(stop.body, []).append(printed(stop.detent.pressed))
-            self._ridges.setdefault(stop.other, []).append(solids.bounds(printed(stop.detent.ridges)))
-        return found
+        if self._thin_sides(stop.other, base) > self._thin_sides(stop.other, fitted.changed.get(stop.other, base)):
+            return None
+        angle = self._play(stop.joint, held, made)
+        if angle is None or self._unlatched({**fitted.changed, stop.other: base}):
+            return None
+        (start, end), into = held.ends.tolist(), held.into.tolist()
+        latch = Latch(stop.other, (tuple(start), tuple(end)), tuple(into), angle, held.moment)
+        return Latched(base, needs_seats, latch)
+
+    def lock(self, stop: Stop, made: Latched) -> None:
+        """Makes the latch of a stop that is made."""
+        assert stop.lock is not None
+        if made.needs_seats:
+            self._change(stop.other, Change(True, stop.lock.seats))
+        self._change(stop.other, Change(False, stop.lock.groove))
+        self._make(stop.other, made.base)
+        self.locks[stop.joint] = stop.lock
+
+    def _play(self, joint: str, held: Lock, made: Mapping[str, Solid]) -> float | None:
+        """How far a hinge turns from open before its pin holds it, degrees; None where it does not, or has no room."""
+        base = self._base_of(joint)
+        panel = next(part for part in self._parts[joint] if part != base)
+        if not is_free(made.values(), held):
+            return None
+        return held_at(self.turns[joint], made[panel], held, is_base_first=self._parts[joint][0] == base)
+
+    def _base_of(self, joint: str) -> str:
+        bases = {base for base, *_ in self._feet}
+        return next(part for part in self._parts[joint] if part in bases)
+
+    def _missing(self, base: Solid, held: Lock) -> float:
+        """How much of what has to be of a base beside a groove, cut or not, is not, mm³."""
+        return float(solids.cut(printed(held.seats), [base, printed(held.groove)]).volume())
+
+    def _has_room_for_seats(self, stop: Stop, held: Lock, made: Mapping[str, Solid]) -> bool:
+        """Whether nothing meets the seats that a base is given along the whole fold."""
+        added = solids.cut(printed(held.seats), [made[stop.other]])
+        return self._fits(stop.other, added) and all(
+            self._is_apart(stop.other, added, name, other) for name, other in made.items() if name != stop.other
+        )
 
     def _halves(self, joint: str, fitted: Fitted | None = None) -> tuple[Solid, Solid]:
         made = self.made if fitted is None else {**self.made, **fitted.changed}

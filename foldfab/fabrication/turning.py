@@ -43,14 +43,25 @@ class Turn:
 def turn(joint: Joint, first: Array, second: Array) -> Turn:
     """The range of a hinge from the poses (k, 4, 4) of its two parts over a whole fold."""
     relative = np.linalg.inv(first) @ second
-    axis = joint.axis
+    angles, axis = _angles(relative, joint.axis), joint.axis
+    if turn_sign(relative, axis) < 0:
+        angles, axis = -angles, axis[::-1]
+    return Turn(relative[int(angles.argmin())], relative[int(angles.argmax())], axis)
+
+
+def turn_sign(relative: Array, axis: Array) -> float:
+    """1 where poses (k, 4, 4) that begin open turn positively about an axis (2, 3) at their widest, else -1."""
+    angles = _angles(relative, axis)
+    return -1.0 if angles[np.abs(angles).argmax()] < 0 else 1.0
+
+
+def _angles(relative: Array, axis: Array) -> Array:
+    """(k,) radians by which poses (k, 4, 4) are turned about an axis (2, 3)."""
     along = (axis[1] - axis[0]) / np.linalg.norm(axis[1] - axis[0])
     r = relative[:, :3, :3]
     skew = np.stack([r[:, 2, 1] - r[:, 1, 2], r[:, 0, 2] - r[:, 2, 0], r[:, 1, 0] - r[:, 0, 1]], axis=1)
-    angles = np.unwrap(np.arctan2(skew @ along / 2, (np.trace(r, axis1=1, axis2=2) - 1) / 2))
-    if angles[np.abs(angles).argmax()] < 0:
-        angles, axis = -angles, axis[::-1]
-    return Turn(relative[int(angles.argmin())], relative[int(angles.argmax())], axis)
+    angles: Array = np.unwrap(np.arctan2(skew @ along / 2, (np.trace(r, axis1=1, axis2=2) - 1) / 2))
+    return angles
 
 
 def rotation(axis: Array, angle: float) -> Array:

@@ -231,7 +231,7 @@ class PrintForm(Form):
         default=_PRINT.shape,
         description="Plain plates, or the solids of parts that came with a shape, where they fold.",
     )
-    latch: bool = Field(default=_PRINT.latch, description="Whether a detent holds the furniture open.")
+    latch: bool = Field(default=_PRINT.latch, description="Whether pins of filament can hold the furniture open.")
     scale: Scale = Field(default="fit", description="Print size over true size; fit is the largest on the printer.")
 
 

@@ -167,7 +167,7 @@ class PrintOptions:
     shape: Look = "plain"
     """Whether plates are plain, or look like the parts that came as meshes or CAD solids."""
     latch: bool = False
-    """Whether base hinges get a detent that holds them open."""
+    """Whether base hinges get a groove for a pin that holds them open."""
     scale: float | None = None
     """Print size over true size; None is the largest that fits the printer."""
 

@@ -87,7 +87,7 @@ def test_a_print_that_would_not_work_is_an_error(assembled: Callable[..., Assemb
 
 def test_the_error_lists_the_findings(assembled: Callable[..., Assembly], monkeypatch: pytest.MonkeyPatch) -> None:
     findings = [Finding("clash", f"part {i} meets its neighbour", is_fatal=i > 0) for i in range(15)]
-    monkeypatch.setattr(room, "inspect", lambda assembly, made, tell, gives: findings)
+    monkeypatch.setattr(room, "inspect", lambda assembly, made, tell: findings)
     with pytest.raises(FabricationError) as raised:
         room.build(assembled("table").solution, "open")
     lines = str(raised.value).splitlines()

@@ -18,9 +18,7 @@ from foldfab.fabrication.printed import printed
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.turning import PAST, meets, turn
 from foldfab.folding.model import FoldSolution
-from foldfab.folding.solve import solve
 from foldfab.recipe.model import Part
-from foldfab.scaffold.abstract import abstract
 
 THIN = [
     *itertools.product(("table", "same_way", "two_ways", "corner"), ("open",)),
@@ -96,23 +94,11 @@ def test_a_tongue_beyond_the_edge_of_its_base_gets_a_lip(
     assert low[0] < -83.5 and high[0] > 83.5
 
 
-@pytest.mark.parametrize("is_latched", [False, True])
-def test_a_lip_is_as_wide_as_what_it_holds(is_latched: bool, hinge_at: Callable[..., Mount]) -> None:
-    stop = next(s for s in levers(hinge_at("t_scaffold", 3.0), is_latched=is_latched) if s.lip is not None)
+def test_a_lip_is_as_wide_as_what_it_holds(hinge_at: Callable[..., Mount]) -> None:
+    stop = next(s for s in levers(hinge_at("t_scaffold", 3.0), is_latched=False) if s.lip is not None)
     assert stop.lip is not None
     (low, high), (tip, end) = (solids.bounds(printed(shape)) for shape in (stop.lip, stop.added))
-    assert high[1] - low[1] == pytest.approx(end[1] - tip[1] + (4.0 if is_latched else 0.0))
-
-
-def test_a_latch_holds_where_its_tongue_has_a_lip(
-    solution: Callable[..., FoldSolution], board_at: Callable[..., Part], wall_at: Callable[..., Part]
-) -> None:
-    parts = (board_at("top", 72, 164), wall_at("left", -80, 0, 72), wall_at("right", 80, 0, 72))
-    recipe = solution(parts, thickness=3.0).scaffold.recipe
-    assert recipe.direction is not None
-    recipe = replace(recipe, print=replace(recipe.print, latch=True))
-    made = build(solve(abstract(recipe, recipe.direction, 1.0)), "open")
-    assert all(joint.latch is not None and joint.stop_deg[0] == 3.0 for joint in made.joints)
+    assert high[1] - low[1] == pytest.approx(end[1] - tip[1])
 
 
 def test_an_arm_lies_where_a_slot_would_cut_the_foot_of_another_hinge(

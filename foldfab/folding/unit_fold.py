@@ -137,8 +137,7 @@ def least_choice(problem: Problem, own: Repertoire) -> Choice:
     graph = Graph(problem, own, unhindered(problem, own), np.zeros(3))
     picked = graph.cheapest()
     while wanted := _wanted(problem, own, graph, picked):
-        for patch in wanted:
-            extend(problem, own, patch)
+        extend(problem, own, wanted)
         graph = Graph(problem, own, unhindered(problem, own), np.zeros(3))
         picked = graph.cheapest()
     if picked is None:
@@ -211,8 +210,7 @@ def _picked(
     known = graph.holds(own.least) if not around.offset.any() else None
     picked = known or graph.cheapest()
     while wanted := _wanted(problem, own, graph, picked):
-        for patch in wanted:
-            extend(problem, own, patch)
+        extend(problem, own, wanted)
         found = prospects(problem, own, around, in_place=in_place)
         graph = Graph(problem, own, found, around.offset, graph.learned, scene.chosen)
         picked = graph.cheapest()

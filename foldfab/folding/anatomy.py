@@ -6,14 +6,16 @@ K × K around its axis, and a base hinge's foot reaches from the base face to K/
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
-from foldfab.folding.mechanism import REMEMBERED, directions, joined, start, tilts
+from foldfab.folding.mechanism import REMEMBERED, directions, joined, open_and_folded, start, tilts
 from foldfab.folding.model import Chain, Shape, Thickness
-from foldfab.geometry.arrays import Array
+from foldfab.geometry.arrays import Array, Indices
 from foldfab.geometry.boxes import Boxes, stacked
 from foldfab.scaffold.model import BasePatch
 
@@ -25,6 +27,34 @@ _MIRRORED_PLACE = np.array([-1.0, 1.0, 1.0])
 """What turns places of a chain that folds to the right into those of one that folds to the left."""
 _MIRRORED_AXES = np.array([[1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [-1.0, 1.0, 1.0]])
 """The same for the axes of its boxes, which tilt the other way."""
+
+
+Spans = tuple[tuple[float, float], ...]
+"""Extents along the hinge direction of the panels and of each inserted hinge, mm."""
+
+
+class Foot(NamedTuple):
+    """What a base hinge turns on, as it lies about the hinge's axis."""
+
+    middle: float
+    """Along the axis from the middle of the chain, mm."""
+    height: float
+    """How far it stands off the axis, away from the base, mm."""
+    half: tuple[float, float, float]
+    """Half lengths across and along the axis, and away from the base, mm."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ride:
+    """A chain as it folds while its bases carry it."""
+
+    chain: Chain
+    progress: Array
+    """(k,) fold progress."""
+    near: Array
+    """(k, 3) translation of its anchor, mm."""
+    far: Array | None
+    """(k, 3) translation of its far base, mm; None for a T-scaffold."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,46 +87,38 @@ def base_boxes(base: BasePatch, thickness: Thickness) -> Boxes:
 
 def moving_boxes(chain: Chain, thickness: Thickness, progress: Array) -> Boxes:
     """Slabs and knuckles (k, 2 m - 1) of a chain at each progress (k,), relative to the anchor's open position."""
-    spans = (tuple(chain.span.tolist()), *map(tuple, chain.hinge_spans[1:-1].tolist()))
     when = np.asarray(progress, dtype=np.float64).tobytes()
-    made = _moving(chain.to_the_right, chain.panel, thickness.gap, spans, when)
-    if chain.turn < 0:
-        made = Boxes(made.center * _MIRRORED_PLACE, made.axes * _MIRRORED_AXES, made.half)
-    return Boxes(chain.root + made.center @ chain.basis, made.axes @ chain.basis, made.half)
+    made = _moving(chain.to_the_right, chain.panel, thickness.gap, _spans(chain), when)
+    return _placed(chain, made)
 
 
 @lru_cache(REMEMBERED)
-def _moving(shape: Shape, panel: float, gap: float, spans: tuple[tuple[float, float], ...], progress: bytes) -> Boxes:
-    """The same in the chain's own frame (across, along, rise), from its root.
+def _moving(shape: Shape, panel: float, gap: float, spans: Spans, progress: bytes) -> Boxes:
+    """The same in the frame of the chain to the right (across, along, rise), from its root."""
+    normal, length = directions(tilts(shape, np.frombuffer(progress)))
+    hinges = joined(shape, normal, length)
+    frames, count = normal.shape[:2]
+    axes = np.zeros((frames, 2 * count - 1, 3, 3))
+    axes[:, :count, 0, ::2], axes[:, :count, 2, ::2] = normal, length
+    axes[:, :, 1, 1] = 1.0
+    axes[:, count:] = axes[:, : count - 1]
+    low = [0.0, *[gap / 2] * (count - 1)]
+    high = [*(whole - gap / 2 for whole in shape.lengths[:-1]), shape.lengths[-1]]
+    center = np.zeros((frames, 2 * count - 1, 3))
+    center[:, :count, ::2] = hinges[:, :-1] - np.array(shape.offsets[:-1])[:, None] * normal
+    center[:, :count, ::2] += length * np.array([(a + b) / 2 for a, b in zip(low, high, strict=True)])[:, None]
+    center[:, count:, ::2] = hinges[:, 1:-1]
+    center[:, :, 1] = [*[(spans[0][0] + spans[0][1]) / 2] * count, *((a + b) / 2 for a, b in spans[1:])]
+    width = (spans[0][1] - spans[0][0]) / 2
+    slabs = [(panel / 2, width, (b - a) / 2) for a, b in zip(low, high, strict=True)]
+    half = np.empty((frames, 2 * count - 1, 3))
+    half[:] = [*slabs, *((panel / 2, (b - a) / 2, panel / 2) for a, b in spans[1:])]
+    return Boxes(center, axes, half)
 
-    `spans` holds the extent of the panels and of each inserted hinge along the hinge direction.
-    """
-    angles = tilts(shape, np.frombuffer(progress))
-    normal, length = directions(angles)
-    axes_flat = joined(shape, normal, length)
-    count = len(shape.lengths)
-    axes = np.zeros((*angles.shape, 3, 3))
-    axes[..., 0, ::2], axes[..., 2, ::2] = normal, length
-    axes[..., 1, 1] = 1.0
-    low, high = np.full(count, gap / 2), np.array(shape.lengths) - gap / 2
-    low[0], high[-1] = 0.0, shape.lengths[-1]
-    span = np.array(spans)
-    middle, reach = span.mean(axis=1), (span[:, 1] - span[:, 0]) / 2
-    center = np.zeros((*angles.shape, 3))
-    center[..., 0::2] = axes_flat[:, :-1]
-    center -= np.array(shape.offsets)[:-1, None] * axes[..., 0, :]
-    center += axes[..., 2, :] * ((low + high) / 2)[:, None]
-    center[..., 1] = middle[0]
-    half = np.stack([np.full(count, panel / 2), np.full(count, reach[0]), (high - low) / 2], axis=1)
-    knuckles = np.zeros((len(angles), count - 1, 3))
-    knuckles[..., 0::2] = axes_flat[:, 1:-1]
-    knuckles[..., 1] = middle[1:]
-    bars = np.stack([np.full(count - 1, panel / 2), reach[1:], np.full(count - 1, panel / 2)], axis=1)
-    halves = np.concatenate([half, bars])
-    return Boxes(
-        np.concatenate([center, knuckles], axis=1), np.concatenate([axes, axes[:, :-1]], axis=1),
-        np.broadcast_to(halves, (len(angles), *halves.shape)),
-    )  # fmt: skip
+
+def _spans(chain: Chain) -> Spans:
+    first, last = chain.span.tolist()
+    return ((first, last), *((low, high) for low, high in chain.hinge_spans[1:-1].tolist()))
 
 
 def resting_boxes(chain: Chain, thickness: Thickness, progress: float) -> Boxes:
@@ -107,36 +129,64 @@ def resting_boxes(chain: Chain, thickness: Thickness, progress: float) -> Boxes:
     return stacked([moving_boxes(chain, thickness, when)[frame], anchor_feet(chain, thickness)])
 
 
-def swept_boxes(chain: Chain, thickness: Thickness, progress: Array, near: Array, far: Array | None) -> Boxes:
-    """Panels, knuckles and feet (k, n) of a chain while its anchor and its far base are translated by `near` and `far`
-    (k, 3).
+def swept_boxes(rides: Sequence[Ride], thickness: Thickness) -> tuple[Boxes, Indices]:
+    """Panels, knuckles and feet (k, n) of all chains that ride at once, and of which of them each is (n,).
+
+    Those of a chain follow one another: slabs, knuckles, the foot on its anchor and last that on its far base.
     """
-    panels = moving_boxes(chain, thickness, progress)
-    feet = [(anchor_feet(chain, thickness), near)]
-    if far is not None:
-        feet.append((far_feet(chain, thickness), far))
-    count = panels.center.shape[1]
-    shape = (len(progress), count + len(feet))
-    found = Boxes(np.empty((*shape, 3)), np.empty((*shape, 3, 3)), np.empty((*shape, 3)))
-    found.center[:, :count] = panels.center + near[:, None]
-    found.axes[:, :count], found.half[:, :count] = panels.axes, panels.half
-    for i, (foot, shift) in enumerate(feet, count):
-        found.center[:, i] = foot.center + shift
-        found.axes[:, i], found.half[:, i] = foot.axes, foot.half
+    made = [_carried(ride, thickness) for ride in rides]
+    found = Boxes(*(np.concatenate([getattr(m, f) for m in made], axis=1) for f in ("center", "axes", "half")))
+    return found, np.repeat(np.arange(len(made)), [boxes.center.shape[1] for boxes in made])
+
+
+def _carried(ride: Ride, thickness: Thickness) -> Boxes:
+    chain, ends = ride.chain, (0, -1) if ride.far is not None else (0,)
+    feet = tuple(_foot(chain, thickness, end) for end in ends)
+    when = ride.progress.tobytes()
+    made = _placed(chain, _standing(chain.to_the_right, chain.panel, thickness.gap, _spans(chain), feet, when))
+    on_far = 1 if ride.far is not None else 0
+    made.center[:, : made.center.shape[1] - on_far] += ride.near[:, None]
+    if ride.far is not None:
+        made.center[:, -1] += ride.far
+    return made
+
+
+def _placed(chain: Chain, made: Boxes) -> Boxes:
+    """Boxes of the chain to the right, in its frame, where the chain has them."""
+    center, axes = made.center, made.axes
+    if chain.turn < 0:
+        center, axes = center * _MIRRORED_PLACE, axes * _MIRRORED_AXES
+    # As one flat product: numpy would make one of every few rows.
+    flat = (center.reshape(-1, 3) @ chain.basis).reshape(center.shape)
+    return Boxes(chain.root + flat, (axes.reshape(-1, 3) @ chain.basis).reshape(axes.shape), made.half)
+
+
+@lru_cache(REMEMBERED)
+def _standing(shape: Shape, panel: float, gap: float, spans: Spans, feet: tuple[Foot, ...], progress: bytes) -> Boxes:
+    moving = _moving(shape, panel, gap, spans, progress)
+    frames, count = moving.center.shape[:2]
+    size = (frames, count + len(feet))
+    found = Boxes(np.zeros((*size, 3)), np.zeros((*size, 3, 3)), np.empty((*size, 3)))
+    found.center[:, :count], found.axes[:, :count], found.half[:, :count] = moving.center, moving.axes, moving.half
+    found.axes[:, count:] = np.eye(3)
+    for i, foot in enumerate(feet, count):
+        found.center[:, i, 1], found.center[:, i, 2], found.half[:, i] = foot.middle, foot.height, foot.half
+    if len(feet) == 2:
+        across, rise = open_and_folded(shape)[0]
+        found.center[:, -1] = across, feet[1].middle, rise - feet[1].height
     return found
 
 
 def anchor_feet(chain: Chain, thickness: Thickness) -> Boxes:
     """The foot or plinth (1,) of the chain on its anchor, open position."""
-    return _foot(chain, thickness, chain.root, chain.rise, chain.pads[0], chain.hinge_spans[0])
+    return _foot_box(chain, _foot(chain, thickness, 0), chain.root, chain.rise)
 
 
 def far_feet(chain: Chain, thickness: Thickness) -> Boxes:
     """The foot or plinth of the chain on its far base (1,), or none (0,) for a T-scaffold, open position."""
     if chain.far is None:
         return Boxes(np.zeros((0, 3)), np.zeros((0, 3, 3)), np.zeros((0, 3)))
-    place = chain.root + start(chain)
-    return _foot(chain, thickness, place, -chain.rise, chain.pads[1], chain.hinge_spans[-1])
+    return _foot_box(chain, _foot(chain, thickness, -1), chain.root + start(chain), -chain.rise)
 
 
 def pockets(chain: Chain, end: int, thickness: Thickness) -> Boxes:
@@ -160,11 +210,14 @@ def pockets(chain: Chain, end: int, thickness: Thickness) -> Boxes:
     return Boxes(center[None], chain.basis[None], half)
 
 
-def _foot(chain: Chain, thickness: Thickness, axis: Array, outward: Array, pad: float, hinge: Array) -> Boxes:
-    """From the base face or the pocket's floor, below the axis seen along `outward`, to the far side of the knuckle."""
-    thickness, span = thickness.of(chain.panel), chain.span if pad > 0 else hinge
+def _foot(chain: Chain, thickness: Thickness, end: int) -> Foot:
+    """From the base face or the pocket's floor, below the axis seen from the base, to the far side of the knuckle."""
+    thickness, pad = thickness.of(chain.panel), chain.pads[end]
     low, high = -thickness.axis_height - max(pad, 0.0), thickness.panel / 2
-    start, end = span.tolist()
-    center = axis + outward * ((low + high) / 2) + chain.along * ((start + end) / 2)
-    half = np.array([[thickness.panel / 2, (end - start) / 2, (high - low) / 2]])
-    return Boxes(center[None], chain.basis[None], half)
+    first, last = (chain.span if pad > 0 else chain.hinge_spans[end]).tolist()
+    return Foot((first + last) / 2, (low + high) / 2, (thickness.panel / 2, (last - first) / 2, (high - low) / 2))
+
+
+def _foot_box(chain: Chain, foot: Foot, axis: Array, outward: Array) -> Boxes:
+    center = axis + outward * foot.height + chain.along * foot.middle
+    return Boxes(center[None], chain.basis[None], np.array([foot.half]))

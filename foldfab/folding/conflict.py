@@ -16,8 +16,9 @@ from functools import cache
 import numpy as np
 
 from foldfab.folding.balance import can_agree
+from foldfab.folding.lanes import Lane
 from foldfab.folding.problem import Problem
-from foldfab.folding.repertoire import Lane, Repertoire, cuts_of, lane, regions, resting, swept
+from foldfab.folding.repertoire import Repertoire, cuts_of, lane, regions, resting, swept
 from foldfab.folding.space import Batch, conflicts, meetings
 from foldfab.geometry.arrays import Array, Bools, Indices
 
@@ -164,14 +165,18 @@ def _never_compared(own: Repertoire, fresh: list[Lane]) -> tuple[Bools, Bools]:
     """(lanes, lanes) those of one patch and those that drag bases along different ways, which never go together; and
     these and, of two fresh lanes, the second with the first.
     """
-    patches = {p: i for i, p in enumerate(own.unit.patches)}
-    patch = np.array([patches[x.patch] for x in own.lanes])
-    way = _ways(own)
+    patch, way = _patches(own), _ways(own)
     is_fresh = np.zeros(len(own.lanes), dtype=bool)
     is_fresh[[x.number for x in fresh]] = True
     number = np.arange(len(own.lanes))
     same: Bools = (patch[:, None] == patch) | (way[:, None] != way)
     return same, same | (is_fresh[:, None] & is_fresh & (number[:, None] >= number))
+
+
+def _patches(own: Repertoire) -> Indices:
+    """(lanes,) the patch of each lane, by number."""
+    number = {p: i for i, p in enumerate(own.unit.patches)}
+    return np.array([number[x.patch] for x in own.lanes])
 
 
 def _ways(own: Repertoire) -> Indices:
@@ -191,16 +196,17 @@ def _ways(own: Repertoire) -> Indices:
 
 
 def meet_across(problem: Problem, own: Repertoire, many: list[Lane], others: list[Lane]) -> set[tuple[int, int]]:
-    """Which of some lanes meet which others, by number, of those that drag bases along different ways.
+    """Which of some lanes meet which others of other patches, by number, where they drag bases along different ways.
 
     They never go together, so this is no part of the conflict graph; it tells why a patch does not fold by one of them.
     """
     found: set[tuple[int, int]] = set()
-    way = _ways(own)
+    patch, way = _patches(own), _ways(own)
+    never = (way[:, None] == way) | (patch[:, None] == patch)
     for section in range(own.nominal.sections) if way.any() else ():
         a, b = swept(problem, own, many, section), swept(problem, own, others, section)
         if a is not None and b is not None:
-            for _, p, q in meetings(a, b, way[:, None] == way):
+            for _, p, q in meetings(a, b, never):
                 found.update(zip(a.lane[p].tolist(), b.lane[q].tolist(), strict=True))
     return found
 

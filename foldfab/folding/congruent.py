@@ -12,10 +12,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from foldfab.folding.balance import pocket_room
+from foldfab.folding.lanes import Lane
 from foldfab.folding.nominal import Nominal
 from foldfab.folding.outline import leaves_outline
 from foldfab.folding.problem import Problem
-from foldfab.folding.repertoire import Lane, Repertoire, made_from_scratch
+from foldfab.folding.repertoire import Repertoire, made_from_scratch
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Array
 from foldfab.geometry.boxes import Boxes

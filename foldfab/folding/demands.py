@@ -47,7 +47,7 @@ def require_allowed(problem: Problem) -> None:
         own = repertoire(problem, unit)
         for patch in asked:
             while own.later[patch]:
-                extend(problem, own, patch)
+                extend(problem, own, [patch])
         options = options_of(problem, unhindered(problem, own), np.zeros(3)) if asked else {}
         for patch in asked:
             if not np.isfinite(options[patch].weight).any():

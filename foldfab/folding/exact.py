@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from foldfab.folding.work import ENGINE, STARTING
-from foldfab.geometry.arrays import Array, Bools
+from foldfab.geometry.arrays import Array, Bools, Indices
 
 UNITS_PER_COST = 1e8
 """Costs are rounded to integers of this resolution."""
@@ -38,22 +38,36 @@ def proven(
     from ortools.sat.python import cp_model
 
     model = cp_model.CpModel()
-    on = {(g, int(o)): model.new_bool_var(f"{g}/{o}") for g, left in alive.items() for o in np.nonzero(left)[0]}
-    for g, left in alive.items():
-        model.add_exactly_one(on[g, int(o)] for o in np.nonzero(left)[0])
-    pairs = [(a, b) for a in alive for b in sorted(table[a]) if a < b and b in alive]
-    for g, h in pairs:
-        for o in np.nonzero(alive[g])[0]:
-            others = np.nonzero(table[g][h][o] & alive[h])[0]
-            if len(others):
-                model.add_at_most_one([on[g, int(o)], *(on[h, int(p)] for p in others)])
+    options = {g: np.nonzero(left)[0].tolist() for g, left in alive.items()}
+    on = {(g, o): model.new_bool_var(f"{g}/{o}") for g, own in options.items() for o in own}
+    for g, own in options.items():
+        model.add_exactly_one(on[g, o] for o in own)
+    _exclude(model, {g: np.array([on[g, o].index for o in own]) for g, own in options.items()}, options, table)
     for combination in forbidden:
         taken = [sum(on[g, o] for o in options if (g, o) in on) for g, options in combination]
         model.add(sum(taken) <= len(taken) - 1)
-    model.minimize(sum(round(float(costs[g][o]) * UNITS_PER_COST) * var for (g, o), var in on.items()))
+    prices = [round(float(costs[g][o]) * UNITS_PER_COST) for g, o in on]
+    model.minimize(cp_model.LinearExpr.weighted_sum(list(on.values()), prices))
     for key in (known or {}).items():
         model.add_hint(on[key], True)
     return (*_solved(model, solver := _engine(), on, costs, known), _charge(solver))
+
+
+def _exclude(
+    model: Any, number: Mapping[int, Indices], options: Mapping[int, list[int]], table: list[dict[int, Bools]]
+) -> None:  # fmt: skip
+    """Says which options of different groups exclude each other; `number` (n,) are their variables.
+
+    Straight to the program: through the door for single constraints this would take longer than to solve it.
+    """
+    constraints = model.proto.constraints
+    for g, own in options.items():
+        for h in sorted(h for h in table[g] if g < h and h in options):
+            excluded = table[g][h][np.ix_(own, options[h])]
+            for first, row in zip(number[g].tolist(), excluded, strict=True):
+                others = number[h][row].tolist()
+                if others:
+                    constraints.add().at_most_one.literals.extend([first, *others])
 
 
 def _engine() -> Any:

@@ -9,11 +9,11 @@ import numpy as np
 
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.graph import Graph
+from foldfab.folding.lanes import Lane
 from foldfab.folding.master import Cut, Master, Order
 from foldfab.folding.options import Options
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import Prospects, unhindered
-from foldfab.folding.repertoire import Lane
 from foldfab.folding.scene import Scene
 from foldfab.folding.symmetry import Signature, is_less, signature, unlike
 from foldfab.folding.units import Unit

@@ -20,7 +20,7 @@ import numpy as np
 
 from foldfab.folding.model import Chain, Shape
 from foldfab.geometry.arrays import Array
-from foldfab.geometry.rotation import cosine, sine
+from foldfab.geometry.rotation import sine_and_cosine
 
 QUARTER = np.pi / 2
 TABLE = 385
@@ -59,9 +59,8 @@ def joined(chain: Chain | Shape, normal: Array, length: Array) -> Array:
 def directions(angles: Array) -> tuple[Array, Array]:
     """Face normals and length directions (k, m, 2) of panels with tilts (k, m), in the plane of the chain."""
     normal, length = np.empty((*angles.shape, 2)), np.empty((*angles.shape, 2))
-    normal[..., 0] = length[..., 1] = cosine(angles)
-    length[..., 0] = sine(angles)
-    normal[..., 1] = -length[..., 0]
+    length[..., 0], length[..., 1] = sine_and_cosine(angles)
+    normal[..., 0], normal[..., 1] = length[..., 1], -length[..., 0]
     return normal, length
 
 
@@ -120,14 +119,20 @@ def start(chain: Chain) -> Array:
     return place
 
 
+@lru_cache(REMEMBERED)
+def open_and_folded(shape: Shape) -> Array:
+    """(2, 2) where the last axis stands open and folded, from the root in the plane of the chain, mm."""
+    return reach(shape, np.array([0.0, 1.0]))
+
+
 def open_height(chain: Chain) -> float:
     """How high the last axis stands above the root in the open posture, mm."""
-    return float(_ends(chain.to_the_right)[0, 1])
+    return float(open_and_folded(chain.to_the_right)[0, 1])
 
 
 def _far_axis(chain: Chain) -> Array:
     """(2, 2) where the last axis stands open and folded, in the plane of the chain."""
-    places = _ends(chain.to_the_right)
+    places = open_and_folded(chain.to_the_right)
     return places if chain.turn > 0 else places * _MIRROR
 
 
@@ -144,12 +149,6 @@ def _descent(shape: Shape) -> tuple[Array, Array, int]:
 def _turn(shape: Shape) -> float | None:
     lean = abs(shape.lean)
     return lean / (QUARTER + lean) if shape.comes_down and lean > 0 and len(shape.lengths) > 2 else None
-
-
-@lru_cache(REMEMBERED)
-def _ends(shape: Shape) -> Array:
-    """(2, 2) where the last axis stands open and folded, in the plane of the chain."""
-    return reach(shape, np.array([0.0, 1.0]))
 
 
 @lru_cache(REMEMBERED)

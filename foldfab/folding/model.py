@@ -43,7 +43,7 @@ class Thickness:
 
     def of(self, panel: float | None) -> Thickness:
         """The same with panels of another thickness, mm; itself where they have none of their own."""
-        return self if panel is None else Thickness(panel, self.gap, self.hinge)
+        return self if panel is None or panel == self.panel else Thickness(panel, self.gap, self.hinge)
 
     @property
     def axis_height(self) -> float:

@@ -10,13 +10,14 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
 from foldfab.folding import press
 from foldfab.folding.problem import Problem, clear_height, clearances, held, levels
 from foldfab.folding.units import Unit
-from foldfab.geometry.arrays import Array, Bools
+from foldfab.geometry.arrays import Array, Bools, handed
 
 CLIMB = 3
 """Instants at the start of each section at which thick accordions snap, while the bases wait."""
@@ -51,11 +52,12 @@ def nominal(problem: Problem, unit: Unit) -> Nominal:
     return Nominal({b: np.minimum(level, way[b]) - way[b] for b in unit.bases})
 
 
+@cache
 def evenly(sections: int, frames: int) -> Array:
     """Progress (sections, frames) of a chain that folds evenly, and waits where others snap."""
     moving = FRAMES - CLIMB
     found = np.linspace(0.0, 1.0, sections * moving).reshape(sections, moving)
-    return np.concatenate([np.repeat(found[:, :1], frames - moving, axis=1), found], axis=1)
+    return handed(np.concatenate([np.repeat(found[:, :1], frames - moving, axis=1), found], axis=1))
 
 
 def snapped(progress: Array) -> Array:

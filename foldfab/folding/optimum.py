@@ -123,7 +123,7 @@ def _group(problem: Problem, scene: Scene, others: list[UnitFold], floor: dict[s
         for patch in unit.patches:
             first = own.plain[patch][0].variant if own.plain[patch] else None
             while own.later[patch] and _surcharge(problem, patch, first, own.later[patch][0]) < spare:
-                extend(problem, own, patch)
+                extend(problem, own, [patch])
     lanes = {p: repertoire(problem, u).plain[p] for u in units for p in u.patches}
     return Group(problem, scene, units, known, floor, lanes)
 

@@ -15,9 +15,10 @@ import numpy as np
 from foldfab.folding import basic
 from foldfab.folding.basic import Option
 from foldfab.folding.conflict import windows_table
+from foldfab.folding.lanes import Lane
 from foldfab.folding.problem import Problem, demanding
 from foldfab.folding.prospects import Prospects
-from foldfab.folding.repertoire import Lane, awkwardness
+from foldfab.folding.repertoire import awkwardness
 from foldfab.geometry.arrays import Array, Bools
 
 DELETION = 10.0
@@ -118,9 +119,18 @@ def _priced(
     price = importance[:, None] * (splits[:, None] + (1 - options.alpha) * (1 - kept) ** 2)
     taken = np.array([blocked[x.number] for x in every], dtype=np.float32).reshape(len(every), steps)
     out = taken @ windows_table(windows, steps).T > 0
-    out |= basic.too_narrow(sites, windows, steps, problem.thickness)
+    narrow = _narrow(problem, windows)
+    out |= np.array([narrow[x.patch] for x in every], dtype=bool).reshape(out.shape)
     extra = PREFERENCE * awkwardness(problem, every, offset)[:, None]
     return price, np.where(out, np.inf, price + extra)
+
+
+def _narrow(problem: Problem, windows: tuple[tuple[int, int], ...]) -> Mapping[str, Bools]:
+    """By patch, which of its windows are too narrow for a hinge."""
+    if not problem.narrow:
+        found = basic.too_narrow(list(problem.sites.values()), windows, problem.options.shrink_steps, problem.thickness)
+        problem.narrow.update(zip(problem.sites, found, strict=True))
+    return problem.narrow
 
 
 def _options(

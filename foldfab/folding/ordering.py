@@ -97,9 +97,11 @@ def greedy(problem: Problem, scene: Scene, floor: Mapping[str, Choice]) -> Order
         if best is None:
             continue
         folds.append(best)
+        del state.rest[name]
+        if not state.rest:
+            break
         state.scene = _then(state, best)
         state.ahead.clear()
-        del state.rest[name]
         for other in sorted(state.seen_by.get(name, ())):
             if other in state.rest:
                 _look_again(state, state.rest[other])

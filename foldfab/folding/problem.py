@@ -15,7 +15,7 @@ from foldfab.folding.site import Site
 from foldfab.folding.tree import UnitTree
 from foldfab.folding.units import Unit
 from foldfab.folding.work import Work
-from foldfab.geometry.arrays import Array
+from foldfab.geometry.arrays import Array, Bools
 from foldfab.geometry.boxes import Boxes
 from foldfab.recipe.model import FoldOptions, Part
 from foldfab.scaffold.model import Scaffold
@@ -63,6 +63,8 @@ class Problem:
     """Units that cannot fold wherever they stand, and why."""
     work: Work = field(default_factory=Work)
     """What may be done to solve it, and what has been done."""
+    narrow: dict[str, Bools] = field(default_factory=dict)
+    """By patch, which of its windows are too narrow for a hinge."""
     extents: dict[bytes, tuple[float, float]] = field(default_factory=dict)
     """By direction, between which coordinates the open furniture lies, mm."""
 

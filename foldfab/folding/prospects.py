@@ -13,9 +13,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from foldfab.folding.lanes import Lane
 from foldfab.folding.outline import leaves_box
 from foldfab.folding.problem import Problem
-from foldfab.folding.repertoire import Lane, Repertoire, cuts_of, far_shift, lane, stops_early, swept
+from foldfab.folding.repertoire import Repertoire, cuts_of, far_shift, lane, stops_early, swept
 from foldfab.folding.space import Batch, blocked, carried
 from foldfab.folding.surroundings import Surroundings
 from foldfab.geometry.arrays import Bools

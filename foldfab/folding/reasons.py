@@ -8,9 +8,10 @@ import numpy as np
 
 from foldfab.folding.basic import Option
 from foldfab.folding.conflict import meet_across
+from foldfab.folding.lanes import Lane
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import Prospects
-from foldfab.folding.repertoire import Lane, Repertoire
+from foldfab.folding.repertoire import Repertoire
 
 NAMED = 3
 """How many things a reason names."""
@@ -19,15 +20,18 @@ NAMED = 3
 def reasons_of(problem: Problem, own: Repertoire, found: Prospects, chosen: Mapping[str, Option]) -> dict[str, str]:
     """Why each changed patch had to be changed, one clause that follows what was done to it."""
     lanes = {p: _lane(found, p, o) for p, o in chosen.items()}
+    instead = {p: _instead(found, p, o) for p, o in chosen.items()}
+    kept = [x for x in lanes.values() if x is not None]
+    across = meet_across(problem, own, [x for many in instead.values() for x in many], kept)
     reasons = {}
     for patch, option in chosen.items():
         if option.variant is not None and option.cost == 0.0:
             continue
         told = []
         if option.variant is None or option.window != (0, problem.options.shrink_steps):
-            told.append(_narrowed(problem, own, found, lanes, patch, option))
+            told.append(_narrowed(own, found, lanes, instead[patch], across, patch, option))
         if option.variant is not None and option.variant.hinges:
-            told.append(_split(problem, own, found, lanes, patch, option))
+            told.append(_split(own, found, lanes, instead[patch], across))
         reasons[patch] = "; ".join(dict.fromkeys(text for text in told if text))
     return reasons
 
@@ -52,14 +56,21 @@ def _lane(found: Prospects, patch: str, option: Option) -> Lane | None:
     return next((x for x in found.lanes[patch] if x.variant == option.variant), None)
 
 
+def _instead(found: Prospects, patch: str, option: Option) -> list[Lane]:
+    """The lanes that would leave more of a patch: all where it is deleted, or those with fewer hinges."""
+    most = option.variant.hinges if option.variant is not None else np.inf
+    return [x for x in found.lanes[patch] if x.variant.hinges < most]
+
+
 def _narrowed(
-    problem: Problem, own: Repertoire, found: Prospects, lanes: Mapping[str, Lane | None], patch: str, option: Option
+    own: Repertoire, found: Prospects, lanes: Mapping[str, Lane | None], instead: list[Lane],
+    across: set[tuple[int, int]], patch: str, option: Option,
 ) -> str:  # fmt: skip
     """What the part of the patch that is gone would meet."""
     lane = lanes[patch]
     if lane is None:
-        met = {name for x in found.lanes[patch] for name in found.obstacles[x.number]}
-        met |= _met_by(problem, own, list(found.lanes[patch]), lanes)
+        met = {name for x in instead for name in found.obstacles[x.number]}
+        met |= _met_by(own, instead, lanes, across)
         return _because(met, "it would meet")
     gone = [s for s in range(len(lane.cuts) - 1) if not option.window[0] <= s < option.window[1]]
     folding = _conflicting(own, lane, lanes, gone)
@@ -71,23 +82,21 @@ def _narrowed(
 
 
 def _split(
-    problem: Problem, own: Repertoire, found: Prospects, lanes: Mapping[str, Lane | None], patch: str, option: Option
+    own: Repertoire, found: Prospects, lanes: Mapping[str, Lane | None], fewer: list[Lane], across: set[tuple[int, int]]
 ) -> str:  # fmt: skip
     """What it would meet in one piece, or with fewer hinges."""
-    assert option.variant is not None
-    fewer = [x for x in found.lanes[patch] if x.variant.hinges < option.variant.hinges]
     met = {name for x in fewer if found.blocked[x.number].any() for name in found.obstacles[x.number]}
-    met |= _met_by(problem, own, fewer, lanes)
+    met |= _met_by(own, fewer, lanes, across)
     return _because(met, "with fewer hinges it would meet") if met else "to come straight down"
 
 
-def _met_by(problem: Problem, own: Repertoire, many: list[Lane], lanes: Mapping[str, Lane | None]) -> set[str]:
-    """The patches whose lanes meet any of some lanes of another patch, whether or not they could go together."""
-    own_patches = {x.patch for x in many}
-    met = {q for x in many for q in _conflicting(own, x, lanes, range(len(x.cuts) - 1))}
-    known = own_patches | met
-    rest = [x for p, x in lanes.items() if x is not None and p not in known]
-    return met | {own.lanes[b].patch for _, b in meet_across(problem, own, many, rest)}
+def _met_by(
+    own: Repertoire, many: list[Lane], lanes: Mapping[str, Lane | None], across: set[tuple[int, int]]
+) -> set[str]:  # fmt: skip
+    """The patches whose lanes meet any of some lanes of another patch, whether or not they could go `across`."""
+    numbers = {x.number for x in many}
+    met = {own.lanes[b].patch for a, b in across if a in numbers}
+    return met.union(*(_conflicting(own, x, lanes, range(len(x.cuts) - 1)) for x in many))
 
 
 def _conflicting(own: Repertoire, lane: Lane, lanes: Mapping[str, Lane | None], pieces: range | list[int]) -> set[str]:

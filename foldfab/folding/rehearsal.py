@@ -3,7 +3,7 @@
 While a unit is folded, the units after it are still plain panels to it: where their hinges will be is not decided yet.
 Here they are shown as they became, with knuckles, feet and plinths. A conflict that is found in this way belongs to
 more than a pair of options (it depends on the order), so it is learned: the later patch must fold in another way.
-A unit to which everything near looks as it did when it was folded is not played again.
+A unit to which everything near looks as it did when it was folded is not played again, nor is one that folds alone.
 """
 
 from __future__ import annotations
@@ -28,19 +28,20 @@ def first_clash(problem: Problem, scene: Scene, folds: tuple[UnitFold, ...]) -> 
         scene: the open furniture.
         folds: the folds of its units in their order.
     """
+    if len(folds) == 1:
+        return None
     order = {patch: i for i, fold in enumerate(folds) for patch in fold.unit.patches}
     variants = {p: o.variant for fold in folds for p, o in fold.chosen.items() if o.variant is not None}
     patches = [patch for fold in folds for patch in fold.unit.patches]
     scene = shown(scene, patches, [chain for fold in folds for chain in fold.chains], is_folded=False)
-    for fold in folds:
+    for i, fold in enumerate(folds):
+        scene = after(problem, scene, folds[i - 1]) if i else scene
         around = look(problem, scene, repertoire(problem, fold.unit))
         if around.key == fold.seen:
-            scene = after(problem, scene, fold)
             continue
         numbers = problem.tree.number
         for pair in clashes(fold.unit, numbers, fold.chains, fold.motion, around, problem.thickness):
             blamed = max((p for p in pair if p in variants), key=lambda p: (order[p], p), default=None)
             if blamed is not None:
                 return blamed, replace(variants[blamed], pads=(0.0, 0.0))
-        scene = after(problem, scene, fold)
     return None

@@ -8,78 +8,32 @@ surroundings ask for them.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from foldfab.folding import anatomy, basic
+from foldfab.folding.anatomy import Ride, swept_boxes
 from foldfab.folding.basic import Variant
-from foldfab.folding.mechanism import ends, peak, reach
+from foldfab.folding.lanes import Lane, Movers, made, stopped, upright
 from foldfab.folding.model import Chain
-from foldfab.folding.nominal import FRAMES, Nominal, evenly, nominal, snapped
-from foldfab.folding.outline import leaves_outline
-from foldfab.folding.press import follow_down, play_limit
-from foldfab.folding.problem import Problem, extent, variants
-from foldfab.folding.site import Site
+from foldfab.folding.nominal import FRAMES, Nominal, nominal
+from foldfab.folding.problem import Problem, variants
 from foldfab.folding.space import Batch, joined, still
 from foldfab.folding.units import Unit
 from foldfab.folding.work import SWEEPING
 from foldfab.geometry.arrays import Array, Bools
-from foldfab.geometry.boxes import Boxes, bounds, moved
+from foldfab.geometry.boxes import Boxes, moved
 
 ROOM_THICKNESSES = 2.0
 """Plinths and thicker panels may take a chain this many K out of what it sweeps without them."""
 
 TOUCH = 1e-3
 """Parts exactly the gap apart do not meet: the grid that sizes stand on, mm."""
-FEW_BASES = 8
-"""Up to this many bases of a unit it is kept for each lane how it is seen from each of them."""
 TALL = 1e6
 """Half the height of a folding region, mm: what lies above or below it counts."""
 _AWKWARD_DIGITS = 4
 """Of awkwardness: what differs by the grid of places alone is equally awkward."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Lane:
-    """A variant of a patch with its sweep along the unit's nominal fold."""
-
-    number: int
-    """Its place among the lanes of its unit."""
-    patch: str
-    variant: Variant
-    chain: Chain
-    """The whole patch folding by the variant."""
-    active: range
-    """The sections in which it folds."""
-    way: Array
-    """(3,) how far its far end comes."""
-    snap: float
-    """How far its far end rises first, mm."""
-    give: float
-    """How much of that the play in its hinges covers, mm."""
-    drag: Array | None
-    """(FRAMES, 3) how it carries its far base where that is not straight down."""
-    cuts: Array
-    """(N_s + 1,) cutting points along its hinge direction, absolute coordinates, mm."""
-    beside: tuple[float, float]
-    """Between which coordinates along its normal it stays, mm."""
-    is_out: bool
-    """Whether it leaves the outline that in-place folding keeps to."""
-    low: Array
-    """(3,) lower corner of all that it sweeps and of its far base when folded."""
-    high: Array
-    """(3,) upper corner."""
-    reach: tuple[Array, Array] | None
-    """Lower and upper corners (b, 3) of all that it sweeps and half the gap around it, as seen from each base of the
-    unit; None where that has more than a few."""
-
-    def comes_past(self, depth: float) -> bool:
-        """Whether its far base, coming straight down, passes `depth` mm below its start, or above if negative."""
-        if self.drag is not None or self.chain.far is None:
-            return False
-        return self.snap >= -depth if depth < 0 else float(-self.way @ self.chain.rise) >= depth
 
 
 Place = tuple[Lane, tuple[int, int]]
@@ -93,7 +47,7 @@ class Repertoire:
     unit: Unit
     nominal: Nominal
     lanes: list[Lane] = field(default_factory=list)
-    movers: list[dict[int, Boxes]] = field(default_factory=list)
+    movers: list[Movers] = field(default_factory=list)
     """By lane and section, the moving boxes (FRAMES, n)."""
     by_variant: dict[tuple[str, Variant], Lane | None] = field(default_factory=dict)
     """Lanes by what they are; None where a variant does not fit."""
@@ -119,31 +73,40 @@ class Repertoire:
 
 def made_from_scratch(problem: Problem, unit: Unit) -> Repertoire:
     """What the patches of a unit can do at least cost."""
-    made = Repertoire(unit, nominal(problem, unit))
+    own = Repertoire(unit, nominal(problem, unit))
     for patch in unit.patches:
-        made.later[patch] = sorted(variants(problem, unit, patch), key=lambda v: v.hinges)
-        made.plain[patch] = ()
-        while made.later[patch] and not made.plain[patch]:
-            extend(problem, made, patch)
-    made.reach.update(_reach(problem, made))
-    return made
+        own.later[patch] = sorted(variants(problem, unit, patch), key=lambda v: v.hinges)
+        own.plain[patch] = ()
+    while lacking := [p for p in unit.patches if own.later[p] and not own.plain[p]]:
+        extend(problem, own, lacking)
+    own.reach.update(_reach(problem, own))
+    return own
 
 
-def extend(problem: Problem, own: Repertoire, patch: str) -> None:
-    """Adds the lanes of a patch that have the least number of hinges among those that were not needed yet."""
-    later = own.later[patch]
-    count = sum(v.hinges == later[0].hinges for v in later)
-    found = (lane(problem, own, patch, v) for v in later[:count])
-    own.plain[patch] += tuple(x for x in found if x is not None)
-    del later[:count]
+def extend(problem: Problem, own: Repertoire, patches: Iterable[str]) -> None:
+    """Adds the lanes of each patch that have the least number of hinges among those that were not needed yet."""
+    wanted = [(p, v) for p in patches for v in own.later[p] if v.hinges == own.later[p][0].hinges]
+    for (patch, variant), found in zip(wanted, lanes(problem, own, wanted), strict=True):
+        own.later[patch].remove(variant)
+        own.plain[patch] += (found,) if found is not None else ()
+
+
+def lanes(problem: Problem, own: Repertoire, wanted: Sequence[tuple[str, Variant]]) -> list[Lane | None]:
+    """The lanes of some patches' variants, or None where panels would be too short."""
+    fresh = [key for key in dict.fromkeys(wanted) if key not in own.by_variant]
+    many = made(problem, own.unit, own.nominal, [(problem.sites[p], v) for p, v in fresh], len(own.lanes))
+    for key, found in zip(fresh, many, strict=True):
+        own.by_variant[key] = found[0] if found is not None else None
+        if found is not None:
+            own.lanes.append(found[0])
+            own.movers.append(found[1])
+            problem.work.charge(SWEEPING)
+    return [own.by_variant[key] for key in wanted]
 
 
 def lane(problem: Problem, own: Repertoire, patch: str, variant: Variant) -> Lane | None:
-    """The lane of a variant, or None where its panels would be too short."""
-    key = (patch, variant)
-    if key not in own.by_variant:
-        own.by_variant[key] = _made(problem, own, problem.sites[patch], variant)
-    return own.by_variant[key]
+    """The lane of one variant, or None where its panels would be too short."""
+    return lanes(problem, own, [(patch, variant)])[0]
 
 
 def swept(problem: Problem, own: Repertoire, many: Iterable[Lane], section: int) -> Batch | None:
@@ -160,7 +123,7 @@ def resting(problem: Problem, own: Repertoire, many: Iterable[Lane], section: in
             down = own.nominal.down[x.chain.anchor]
             if section < x.active.start:
                 # Not the first frame of its sweep, in which an accordion has snapped already.
-                at, was = anatomy.swept_boxes(x.chain, problem.thickness, np.zeros(1), *_at_home(x.chain))[0], 0.0
+                at, was = swept_boxes([_at_home(x.chain)], problem.thickness)[0][0], 0.0
             else:
                 at, was = own.movers[x.number][x.active.stop - 1][-1], float(down[x.active.stop - 1, -1])
             shift = upright(down[section] - was)
@@ -192,73 +155,18 @@ def awkwardness(problem: Problem, many: Sequence[Lane], offset: Array) -> Array:
     low, high = np.array([x.low for x in many]).reshape(-1, 3), np.array([x.high for x in many]).reshape(-1, 3)
     out = np.maximum(least - low - offset, 0) + np.maximum(high + offset - most, 0)
     pads = np.array([sum(x.variant.pads) for x in many])
-    found: Array = (out.sum(1) + 2 * pads) / float(np.linalg.norm(most - least))
+    found: Array = (out.sum(1) + 2 * pads) / math.dist(least, most)
     return np.round(found, _AWKWARD_DIGITS)
 
 
-def _at_home(chain: Chain) -> tuple[Array, Array | None]:
-    """No translation (1, 3) of the anchor, and none of the far base where there is one."""
+def _at_home(chain: Chain) -> Ride:
     still = np.zeros((1, 3))
-    return still, still if chain.far is not None else None
+    return Ride(chain, np.zeros(1), still, still if chain.far is not None else None)
 
 
 def cuts_of(own: Repertoire) -> Array:
     """(lanes, N_s + 1) cutting points of every lane."""
     return np.array([x.cuts for x in own.lanes])
-
-
-def _made(problem: Problem, own: Repertoire, site: Site, variant: Variant) -> Lane | None:
-    steps = problem.options.shrink_steps
-    span = basic.window_span(site, (0, steps), steps, problem.thickness)
-    chain = basic.chain(site, variant, span, problem.thickness) if span is not None else None
-    if chain is None or span is None:
-        return None
-    movers, drag = _movers(problem, own, chain)
-    if not movers:
-        return None
-    own.movers.append(movers)
-    corners = {section: bounds(boxes) for section, boxes in movers.items()}
-    low = np.array([low.min((0, 1)) for low, _ in corners.values()]).min(0)
-    high = np.array([high.max((0, 1)) for _, high in corners.values()]).max(0)
-    middle, width, gap = float(site.foot @ site.along), site.patch.width, problem.thickness.gap
-    cuts = middle - width / 2 + width * np.arange(steps + 1) / steps
-    # Half the gap on either side belongs to the outermost pieces.
-    cuts[0], cuts[-1] = min(cuts[0], middle + span[0]) - gap, max(cuts[-1], middle + span[1]) + gap
-    reaches = [extent(boxes, chain.across) for boxes in movers.values()]
-    beside = (min(r[0] for r in reaches), max(r[1] for r in reaches))
-    found = Lane(
-        len(own.lanes), site.patch.name, variant, chain, _span(movers), ends(chain), peak(chain)[0],
-        play_limit(chain, problem.thickness.gap), drag, cuts, beside, leaves_outline(problem, chain, beside),
-        *_with_far_base(problem, chain, low, high), _seen_from_bases(problem, own, chain, drag, corners),
-    )  # fmt: skip
-    own.lanes.append(found)
-    problem.work.charge(SWEEPING)
-    return found
-
-
-def _span(movers: Mapping[int, Boxes]) -> range:
-    return range(min(movers), max(movers) + 1)
-
-
-def _movers(problem: Problem, own: Repertoire, chain: Chain) -> tuple[dict[int, Boxes], Array | None]:
-    """By section in which it folds, panels, knuckles and feet (FRAMES, n); and how it drags its far base."""
-    down = own.nominal.down[chain.anchor]
-    if chain.far is None:
-        progress = evenly(*down.shape)
-        far = None
-    elif chain.mechanism == "slanted":
-        progress = evenly(*down.shape)
-        end = reach(chain, progress[0])
-        far = (end - end[0]) @ chain.plane
-    else:
-        progress = snapped(follow_down(chain, down - own.nominal.down[chain.far]))
-        far = None
-    sections = [k for k in range(len(down)) if chain.far is None or progress[k, -1] > progress[k, 0]]
-    found: dict[int, Boxes] = {}
-    for k in range(min(sections, default=0), max(sections, default=-1) + 1):
-        lead = upright(_stopped(own.nominal, chain, k)) if far is None and chain.far is not None else far
-        found[k] = anatomy.swept_boxes(chain, problem.thickness, progress[k], upright(down[k]), lead)
-    return found, far
 
 
 def far_shift(own: Repertoire, lead: Lane, base: str, section: int) -> Array:
@@ -268,46 +176,14 @@ def far_shift(own: Repertoire, lead: Lane, base: str, section: int) -> Array:
     """
     if base != lead.chain.far:
         return upright(own.nominal.down[base][section])
-    return lead.drag if lead.drag is not None else upright(_stopped(own.nominal, lead.chain, section))
+    return lead.drag if lead.drag is not None else upright(stopped(own.nominal, lead.chain, section))
 
 
 def stops_early(own: Repertoire, x: Lane) -> bool:
     """Whether the lane's far base stops before the nominal fold ends."""
     if x.chain.far is None or x.drag is not None:
         return False
-    return bool(np.any(_stopped(own.nominal, x.chain, -1) > own.nominal.down[x.chain.far][-1] + 1e-6))
-
-
-def _stopped(nominal: Nominal, chain: Chain, section: int) -> Array:
-    assert chain.far is not None
-    found: Array = np.maximum(nominal.down[chain.far][section], nominal.down[chain.anchor][section] + ends(chain)[2])
-    return found
-
-
-def upright(height: Array) -> Array:
-    """(k, 3) translations along Z."""
-    shift = np.zeros((len(height), 3))
-    shift[:, 2] = height
-    return shift
-
-
-def _seen_from_bases(
-    problem: Problem, own: Repertoire, chain: Chain, drag: Array | None, corners: Mapping[int, tuple[Array, Array]]
-) -> tuple[Array, Array] | None:
-    bases = own.unit.bases
-    if len(bases) > FEW_BASES:
-        return None
-    # Where a tilted box gets wider by half the gap, its bounds do so by up to a diagonal of it.
-    margin = math.sqrt(3.0) * problem.thickness.gap / 2
-    lows, highs = [], []
-    for section, (low, high) in corners.items():
-        shift = np.zeros((len(bases), len(low), 3))
-        shift[..., 2] = [own.nominal.down[base][section] for base in bases]
-        if chain.far is not None:
-            shift[bases.index(chain.far)] = drag if drag is not None else upright(_stopped(own.nominal, chain, section))
-        lows.append((low.min(1) - shift).min(1))
-        highs.append((high.max(1) - shift).max(1))
-    return np.array(lows).min(0) - margin, np.array(highs).max(0) + margin
+    return bool(np.any(stopped(own.nominal, x.chain, -1) > own.nominal.down[x.chain.far][-1] + 1e-6))
 
 
 def _reach(problem: Problem, own: Repertoire) -> dict[str, tuple[Array, Array]]:
@@ -327,10 +203,3 @@ def _reach(problem: Problem, own: Repertoire) -> dict[str, tuple[Array, Array]]:
                 low, high = (least - shift).min(0) - margin, (most - shift).max(0) + margin
                 found[base] = (np.minimum(found[base][0], low), np.maximum(found[base][1], high))
     return found
-
-
-def _with_far_base(problem: Problem, chain: Chain, low: Array, high: Array) -> tuple[Array, Array]:
-    if chain.far is None:
-        return low, high
-    (least, most), way = problem.plates[chain.far], ends(chain)
-    return np.minimum(low, least + way), np.maximum(high, most + way)

@@ -13,9 +13,10 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from foldfab.folding import anatomy
+from foldfab.folding.anatomy import Ride
 from foldfab.folding.model import Chain, Thickness
 from foldfab.folding.press import Motion
-from foldfab.folding.space import Batch, carried, joined, meetings
+from foldfab.folding.space import Batch, batch, carried, meetings
 from foldfab.folding.surroundings import Surroundings
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Array, Bools, Indices
@@ -65,7 +66,7 @@ def _played(
     chains: tuple[Chain, ...], motion: Motion, frames: Indices, thickness: Thickness
 ) -> tuple[Batch | None, Batch | None]:
     """The chains that fold in these frames, and those that are only carried along."""
-    folding: list[tuple[Boxes, int]] = []
+    folding: dict[int, Ride] = {}
     carried_along: list[tuple[Boxes, Array, int]] = []
     touched: set[str | None] = set()
     rest: list[int] = []
@@ -76,7 +77,7 @@ def _played(
             continue
         near = motion.shift[chain.anchor][frames]
         far = motion.shift[chain.far][frames] if chain.far is not None else None
-        folding.append((anatomy.swept_boxes(chain, thickness, s, near, far), i))
+        folding[i] = Ride(chain, s, near, far)
         touched |= {chain.anchor, chain.far}
     for i in rest:
         chain = chains[i]
@@ -90,7 +91,7 @@ def _played(
                 [moved(anatomy.far_feet(chain, thickness), motion.shift[chain.far][frames[0]])] if chain.far else []
             )
             carried_along.append((stacked(parts), near - near[0], i))
-    moving = joined(folding, -SKIN) if folding else None
+    moving = _swept(folding, thickness) if folding else None
     if not carried_along:
         return moving, None
     boxes = stacked([b for b, _, _ in carried_along])
@@ -98,6 +99,11 @@ def _played(
     lane = np.repeat([i for _, _, i in carried_along], counts)
     shift = np.repeat(np.stack([w for _, w, _ in carried_along], axis=1), counts, axis=1)
     return moving, carried(grown(boxes, -SKIN), shift, lane)
+
+
+def _swept(folding: Mapping[int, Ride], thickness: Thickness) -> Batch:
+    boxes, whose = anatomy.swept_boxes(list(folding.values()), thickness)
+    return batch(grown(boxes, -SKIN), np.array(list(folding))[whose])
 
 
 def _between_chains(

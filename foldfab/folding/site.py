@@ -69,12 +69,12 @@ def slab(site: Site, thickness: Thickness) -> Boxes:
     """The plain open panel (1,) of a patch that nothing was decided about yet."""
     direction = np.sin(site.lean) * site.across + np.cos(site.lean) * site.rise
     length = site.clear / np.cos(site.lean)
-    gap = thickness.gap
+    gap, (low, high) = thickness.gap, site.span.tolist()
     reach = (length - gap * (1 if site.far is None else 2)) / 2
-    center = site.foot + direction * (gap + reach) + site.along * float(site.span.mean())
+    center = site.foot + direction * (gap + reach) + site.along * ((low + high) / 2)
     normal = cross(site.along, direction)
-    half = np.array([[site.panel / 2, float(np.ptp(site.span)) / 2, max(reach, 0.0)]])
-    return Boxes(center[None], np.stack([normal, site.along, direction])[None], half)
+    half = np.array([[site.panel / 2, (high - low) / 2, max(reach, 0.0)]])
+    return Boxes(center[None], np.array([[normal, site.along, direction]]), half)
 
 
 def plate_boxes(base: BasePatch, held: Iterable[Site], thickness: Thickness) -> Boxes:

@@ -149,8 +149,10 @@ def _across(
 def _brushed(own: Repertoire, low: Array, high: Array, group: Indices, is_other: Bools) -> Indices:
     """Solids that may meet because the unit drags its upper cluster sideways."""
     drags = [x.drag for x in own.lanes if x.drag is not None]
+    if not drags:
+        return np.zeros(0, dtype=np.int64)
     a, b = np.nonzero(is_other & (group == 0))[0], np.nonzero(is_other & (group == 1))[0]
-    if not drags or not len(a) or not len(b):
+    if not len(a) or not len(b):
         return a[:0]
     least, most = np.min([d.min(0) for d in drags], 0), np.max([d.max(0) for d in drags], 0)
     # Few of either side come near the other one at all.

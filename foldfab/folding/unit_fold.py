@@ -6,7 +6,7 @@ lack, and the fold is simulated. What then meets is added to the conflicts and t
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -134,13 +134,13 @@ def fold_alone(problem: Problem, scene: Scene, unit: Unit) -> UnitFold | Refusal
 
 def least_choice(problem: Problem, own: Repertoire) -> Choice:
     """The cheapest choice without conflicts, whatever stands around the unit and however it is played."""
-    graph = Graph(problem, own, unhindered(problem, own), np.zeros(3))
-    picked = graph.cheapest()
-    while wanted := _wanted(problem, own, graph, picked):
-        for patch in wanted:
-            extend(problem, own, patch)
-        graph = Graph(problem, own, unhindered(problem, own), np.zeros(3))
-        picked = graph.cheapest()
+
+    def posed() -> tuple[Prospects, Graph]:
+        found = unhindered(problem, own)
+        return found, Graph(problem, own, found, np.zeros(3))
+
+    found, graph = posed()
+    _, graph, picked = _bettered(problem, own, found, graph, graph.cheapest(), posed)
     if picked is None:
         return Choice(np.inf, {})
     chosen = {o.patch: o.place(i) for o, i in zip(graph.options, picked, strict=True)}
@@ -209,12 +209,29 @@ def _picked(
     """The cheapest choice without conflicts, over all lanes that could be part of it."""
     # Preferences depend on where a unit has been carried, and so may the cheapest choice.
     known = graph.holds(own.least) if not around.offset.any() else None
-    picked = known or graph.cheapest()
-    while wanted := _wanted(problem, own, graph, picked):
-        for patch in wanted:
-            extend(problem, own, patch)
+    learned = graph.learned
+
+    def posed() -> tuple[Prospects, Graph]:
         found = prospects(problem, own, around, in_place=in_place)
-        graph = Graph(problem, own, found, around.offset, graph.learned, scene.chosen)
+        return found, Graph(problem, own, found, around.offset, learned, scene.chosen)
+
+    return _bettered(problem, own, found, graph, known or graph.cheapest(), posed)
+
+
+def _bettered(
+    problem: Problem, own: Repertoire, found: Prospects, graph: Graph, picked: tuple[int, ...] | None,
+    posed: Callable[[], tuple[Prospects, Graph]],
+) -> tuple[Prospects, Graph, tuple[int, ...] | None]:  # fmt: skip
+    """The cheapest choice once all lanes are made that could better it, and the graph `posed` with them.
+
+    That the next ones will better it is seen far sooner than what is the cheapest choice until then.
+    """
+    while wanted := _wanted(problem, own, graph, picked):
+        weight = graph.weight(picked) if picked is not None else -np.inf
+        while wanted:
+            extend(problem, own, wanted)
+            found, graph = posed()
+            wanted = _bettering(problem, own, graph, weight)
         picked = graph.cheapest()
     return found, graph, picked
 
@@ -223,7 +240,11 @@ def _wanted(problem: Problem, own: Repertoire, graph: Graph, picked: tuple[int, 
     """The patches with lanes not made yet that could better a choice; all such where there is no choice."""
     if picked is None:
         return [p for p in own.unit.patches if own.later[p]]
-    weight = graph.weight(picked)
+    return _bettering(problem, own, graph, graph.weight(picked))
+
+
+def _bettering(problem: Problem, own: Repertoire, graph: Graph, weight: float) -> list[str]:
+    """The patches with lanes not made yet that could be part of a choice that weighs less."""
     if weight <= problem.least.get(own.unit, -np.inf):
         return []
     least = {p: _price(problem, p, many[0].variant) if many else np.inf for p, many in own.plain.items()}

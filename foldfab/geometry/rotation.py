@@ -20,6 +20,11 @@ def sine(angle: Array) -> Array:
     return _snapped(np.sin(angle))
 
 
+def sine_and_cosine(angle: Array) -> Array:
+    """(2, …) both of them."""
+    return _snapped(np.array([np.sin(angle), np.cos(angle)]))
+
+
 def cross(a: Array, b: Array) -> Array:
     """The cross product of two vectors (3,): `np.cross` to the last bit, without its overhead for many."""
     a0, a1, a2 = a.tolist()

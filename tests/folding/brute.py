@@ -17,13 +17,13 @@ from foldfab.folding import basic
 from foldfab.folding.basic import Option
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.graph import Graph
+from foldfab.folding.lanes import Lane
 from foldfab.folding.options import Options
 from foldfab.folding.ordering import after
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import prospects, unhindered
 from foldfab.folding.realise import Clash, realised
 from foldfab.folding.rehearsal import first_clash
-from foldfab.folding.repertoire import Lane
 from foldfab.folding.scene import open_scene, shown
 from foldfab.folding.surroundings import look
 from foldfab.folding.unit_fold import UnitFold

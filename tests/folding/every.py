@@ -13,5 +13,5 @@ def whole(made: Problem, unit: Unit) -> Repertoire:
     own = repertoire(made, unit)
     for patch in unit.patches:
         while own.later[patch]:
-            extend(made, own, patch)
+            extend(made, own, [patch])
     return own

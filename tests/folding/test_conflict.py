@@ -11,8 +11,9 @@ import pytest
 
 from foldfab.folding.basic import windows
 from foldfab.folding.conflict import compare, drag_alike, meet_across, neighbours, snap_alike, table, windows_table
+from foldfab.folding.lanes import Lane, upright
 from foldfab.folding.problem import Problem
-from foldfab.folding.repertoire import TOUCH, Lane, Repertoire, upright
+from foldfab.folding.repertoire import TOUCH, Repertoire
 from foldfab.geometry.arrays import Bools
 from foldfab.geometry.boxes import Boxes, grown, moved, overlaps
 from foldfab.recipe.model import Part

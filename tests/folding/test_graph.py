@@ -8,12 +8,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from foldfab.folding import unit_fold
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.graph import Graph
 from foldfab.folding.ordering import floors
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import unhindered
 from foldfab.folding.realise import Clash
+from foldfab.folding.repertoire import extend
 
 from .every import whole
 
@@ -44,6 +46,26 @@ def test_lanes_that_could_better_nothing_are_not_made(problem: Make, name: str) 
     (unit,) = made.units
     own = repertoire(made, unit)
     assert {x.variant.hinges for x in own.lanes} == {0, 1} and all(own.later[p] for p in unit.patches)
+
+
+def test_a_choice_is_proven_only_once_no_lane_promises_to_better_it(
+    problem: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """However many lanes are made after the first choice, there is only one more."""
+    made = problem("deep_box")
+    (unit,) = made.units
+    own, proofs = repertoire(made, unit), list[int]()
+    usual = Graph.cheapest
+
+    def counted(graph: Graph) -> tuple[int, ...] | None:
+        proofs.append(len(own.lanes))
+        return usual(graph)
+
+    monkeypatch.setattr(Graph, "cheapest", counted)
+    grown = list[int]()
+    monkeypatch.setattr(unit_fold, "extend", lambda *given: (grown.append(1), extend(*given)))
+    floors(made)
+    assert len(grown) > 1 and len(proofs) == 2 and proofs[-1] == len(own.lanes)
 
 
 def test_a_promise_is_taken_where_it_is_cheaper_than_what_is_known(problem: Make) -> None:

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from foldfab.folding.congruent import repertoire
+from foldfab.folding.lanes import Lane
 from foldfab.folding.ordering import after
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import THE_BOX, Prospects, prospects, unhindered
-from foldfab.folding.repertoire import TOUCH, Lane, Repertoire, far_shift
+from foldfab.folding.repertoire import TOUCH, Repertoire, far_shift
 from foldfab.folding.scene import Scene, open_scene
 from foldfab.folding.surroundings import Surroundings, look
 from foldfab.folding.unit_fold import UnitFold, fold_unit
@@ -93,7 +94,7 @@ def test_lanes_that_come_near_nothing_have_room(problem: Make, name: str, monkey
     """As they are found to have where every lane is held against everything."""
     rooms = []
     for few in (8, 0):
-        monkeypatch.setattr("foldfab.folding.repertoire.FEW_BASES", few)
+        monkeypatch.setattr("foldfab.folding.lanes.FEW_BASES", few)
         made = problem(name)
         scene = open_scene(made)
         found = []

@@ -12,13 +12,13 @@ import pytest
 from foldfab.folding import anatomy
 from foldfab.folding.basic import Variant
 from foldfab.folding.congruent import repertoire
+from foldfab.folding.lanes import Lane, upright
 from foldfab.folding.mechanism import reach
 from foldfab.folding.nominal import CLIMB, FRAMES
 from foldfab.folding.press import follow_down
 from foldfab.folding.problem import Problem, without
 from foldfab.folding.repertoire import (
     ROOM_THICKNESSES,
-    Lane,
     Repertoire,
     awkwardness,
     cuts_of,
@@ -27,7 +27,6 @@ from foldfab.folding.repertoire import (
     resting,
     stops_early,
     swept,
-    upright,
 )
 from foldfab.folding.scene import open_scene
 from foldfab.folding.unit_fold import UnitFold, fold_unit
@@ -165,7 +164,7 @@ def test_a_lane_rests_open_before_it_folds_and_folded_on_its_base_after(
     before = resting(made, own, [lower], 0)
     assert before is not None and resting(made, own, [upper], 0) is None
     still = np.zeros((1, 3))
-    standing = anatomy.swept_boxes(lower.chain, made.thickness, np.zeros(1), still, still)
+    standing, _ = anatomy.swept_boxes([anatomy.Ride(lower.chain, np.zeros(1), still, still)], made.thickness)
     assert before.boxes.center == pytest.approx(np.broadcast_to(standing.center, before.boxes.center.shape))
     behind = resting(made, own, [upper], 1)
     assert behind is not None and resting(made, own, [lower], 1) is None
@@ -237,5 +236,5 @@ def test_what_would_leave_the_outline_is_known(problem: Make) -> None:
 
 
 def test_units_of_many_bases_keep_no_reach_for_each(problem: Make, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("foldfab.folding.repertoire.FEW_BASES", 1)
+    monkeypatch.setattr("foldfab.folding.lanes.FEW_BASES", 1)
     assert all(x.reach is None for x in only(problem("h_scaffold")).lanes)

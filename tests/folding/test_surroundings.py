@@ -234,5 +234,5 @@ def test_a_scene_is_looked_at_once_until_a_unit_can_do_more(in_box: Problem) -> 
     first = look(in_box, scene, own)
     assert look(in_box, scene, own) is first
     assert look(in_box, replace(scene, offset=scene.offset.copy()), own) is not first
-    extend(in_box, own, own.unit.patches[0])
+    extend(in_box, own, own.unit.patches[:1])
     assert look(in_box, scene, own) is not first

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from foldfab.geometry.rotation import cosine, cross, sine, upright
+from foldfab.geometry.rotation import cosine, cross, sine, sine_and_cosine, upright
 
 AXES = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
 DOWN = np.array([0.0, 0.0, -1.0])
@@ -25,6 +25,11 @@ def test_other_angles_keep_their_sines_and_cosines() -> None:
     angles = np.linspace(-7, 7, 99)
     assert np.allclose(cosine(angles), np.cos(angles), atol=1e-11, rtol=0)
     assert np.allclose(sine(angles), np.sin(angles), atol=1e-11, rtol=0)
+
+
+def test_sines_and_cosines_together_are_those_of_each() -> None:
+    angles = np.linspace(-2 * np.pi, 2 * np.pi, 33).reshape(3, 11)
+    assert sine_and_cosine(angles).tobytes() == np.array([sine(angles), cosine(angles)]).tobytes()
 
 
 @given(st.lists(entry, min_size=6, max_size=6))

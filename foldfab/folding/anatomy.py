@@ -57,19 +57,30 @@ def base_boxes(base: BasePatch, thickness: Thickness) -> Boxes:
 
 def moving_boxes(chain: Chain, thickness: Thickness, progress: Array) -> Boxes:
     """Slabs and knuckles (k, 2 m - 1) of a chain at each progress (k,), relative to the anchor's open position."""
-    spans = (tuple(chain.span.tolist()), *map(tuple, chain.hinge_spans[1:-1].tolist()))
+    count, span = len(chain.lengths), tuple(chain.span.tolist())
     when = np.asarray(progress, dtype=np.float64).tobytes()
-    made = _moving(chain.to_the_right, chain.panel, thickness.gap, spans, when)
+    # A row of knuckles for each of the stretches in which the inserted hinges have any.
+    rows = list(zip(*(chain.stretches(i) for i in range(1, count)), strict=True)) or [()]
+    # Without thickness panels are longer by what knuckles and the gap make up for (section 5.6).
+    apart = -chain.panel if chain.breaks else thickness.gap
+    every = [_moving(chain.to_the_right, chain.panel, apart, (span, *row), when) for row in rows]
+    made = every[0] if len(every) == 1 else _beside([every[0], *(more[:, count:] for more in every[1:])])
     if chain.turn < 0:
         made = Boxes(made.center * _MIRRORED_PLACE, made.axes * _MIRRORED_AXES, made.half)
     return Boxes(chain.root + made.center @ chain.basis, made.axes @ chain.basis, made.half)
 
 
+def _beside(many: list[Boxes]) -> Boxes:
+    """Boxes (k, n_i) as one batch (k, n)."""
+    center, axes, half = ([getattr(boxes, name) for boxes in many] for name in ("center", "axes", "half"))
+    return Boxes(np.concatenate(center, axis=1), np.concatenate(axes, axis=1), np.concatenate(half, axis=1))
+
+
 @lru_cache(REMEMBERED)
-def _moving(shape: Shape, panel: float, gap: float, spans: tuple[tuple[float, float], ...], progress: bytes) -> Boxes:
+def _moving(shape: Shape, panel: float, apart: float, spans: tuple[tuple[float, float], ...], progress: bytes) -> Boxes:
     """The same in the chain's own frame (across, along, rise), from its root.
 
-    `spans` holds the extent of the panels and of each inserted hinge along the hinge direction.
+    Panels end `apart` / 2 from inserted hinges; `spans` holds the extent of the panels and of each inserted hinge along the hinge direction.
     """
     angles = tilts(shape, np.frombuffer(progress))
     normal, length = directions(angles)
@@ -78,7 +89,7 @@ def _moving(shape: Shape, panel: float, gap: float, spans: tuple[tuple[float, fl
     axes = np.zeros((*angles.shape, 3, 3))
     axes[..., 0, ::2], axes[..., 2, ::2] = normal, length
     axes[..., 1, 1] = 1.0
-    low, high = np.full(count, gap / 2), np.array(shape.lengths) - gap / 2
+    low, high = np.full(count, apart / 2), np.array(shape.lengths) - apart / 2
     low[0], high[-1] = 0.0, shape.lengths[-1]
     span = np.array(spans)
     middle, reach = span.mean(axis=1), (span[:, 1] - span[:, 0]) / 2
@@ -112,9 +123,9 @@ def swept_boxes(chain: Chain, thickness: Thickness, progress: Array, near: Array
     (k, 3).
     """
     panels = moving_boxes(chain, thickness, progress)
-    feet = [(anchor_feet(chain, thickness), near)]
+    feet = [(foot, near) for foot in _each(anchor_feet(chain, thickness))]
     if far is not None:
-        feet.append((far_feet(chain, thickness), far))
+        feet += [(foot, far) for foot in _each(far_feet(chain, thickness))]
     count = panels.center.shape[1]
     shape = (len(progress), count + len(feet))
     found = Boxes(np.empty((*shape, 3)), np.empty((*shape, 3, 3)), np.empty((*shape, 3)))
@@ -127,16 +138,16 @@ def swept_boxes(chain: Chain, thickness: Thickness, progress: Array, near: Array
 
 
 def anchor_feet(chain: Chain, thickness: Thickness) -> Boxes:
-    """The foot or plinth (1,) of the chain on its anchor, open position."""
-    return _foot(chain, thickness, chain.root, chain.rise, chain.pads[0], chain.hinge_spans[0])
+    """The feet (n,) of the chain on its anchor, or its plinth (1,), open position."""
+    return _feet(chain, thickness, chain.root, chain.rise, 0)
 
 
 def far_feet(chain: Chain, thickness: Thickness) -> Boxes:
-    """The foot or plinth of the chain on its far base (1,), or none (0,) for a T-scaffold, open position."""
+    """The same (n,) on its far base, or none (0,) for a T-scaffold, open position."""
     if chain.far is None:
         return Boxes(np.zeros((0, 3)), np.zeros((0, 3, 3)), np.zeros((0, 3)))
     place = chain.root + start(chain)
-    return _foot(chain, thickness, place, -chain.rise, chain.pads[1], chain.hinge_spans[-1])
+    return _feet(chain, thickness, place, -chain.rise, 1)
 
 
 def pockets(chain: Chain, end: int, thickness: Thickness) -> Boxes:
@@ -160,11 +171,16 @@ def pockets(chain: Chain, end: int, thickness: Thickness) -> Boxes:
     return Boxes(center[None], chain.basis[None], half)
 
 
-def _foot(chain: Chain, thickness: Thickness, axis: Array, outward: Array, pad: float, hinge: Array) -> Boxes:
+def _each(boxes: Boxes) -> list[Boxes]:
+    return [boxes[i : i + 1] for i in range(len(boxes))]
+
+
+def _feet(chain: Chain, thickness: Thickness, axis: Array, outward: Array, end: int) -> Boxes:
     """From the base face or the pocket's floor, below the axis seen along `outward`, to the far side of the knuckle."""
-    thickness, span = thickness.of(chain.panel), chain.span if pad > 0 else hinge
+    thickness, pad = thickness.of(chain.panel), chain.pads[end]
     low, high = -thickness.axis_height - max(pad, 0.0), thickness.panel / 2
-    start, end = span.tolist()
-    center = axis + outward * ((low + high) / 2) + chain.along * ((start + end) / 2)
-    half = np.array([[thickness.panel / 2, (end - start) / 2, (high - low) / 2]])
-    return Boxes(center[None], chain.basis[None], half)
+    spans = np.array([chain.span] if pad > 0 else chain.stretches(-end))
+    middle, reach = spans.mean(axis=1), (spans[:, 1] - spans[:, 0]) / 2
+    center = axis + outward * ((low + high) / 2) + chain.along * middle[:, None]
+    half = np.stack([np.full(len(spans), thickness.panel / 2), reach, np.full(len(spans), (high - low) / 2)], axis=1)
+    return Boxes(center, np.repeat(chain.basis[None], len(spans), axis=0), half)

@@ -15,13 +15,14 @@ from foldfab.folding import basic
 from foldfab.folding.basic import Option, Variant
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.graph import Graph, Lesson
+from foldfab.folding.interruption import hindered
 from foldfab.folding.model import Chain
 from foldfab.folding.press import Motion
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import Prospects, blocked_pieces, prospects, unhindered
 from foldfab.folding.realise import Clash, realised
 from foldfab.folding.reasons import reason_against, reasons_of
-from foldfab.folding.repertoire import Place, Repertoire, extend
+from foldfab.folding.repertoire import Place, Repertoire, extend, interrupt
 from foldfab.folding.scene import Scene, alone
 from foldfab.folding.surroundings import Surroundings, look
 from foldfab.folding.units import Unit
@@ -141,6 +142,11 @@ def least_choice(problem: Problem, own: Repertoire) -> Choice:
             extend(problem, own, patch)
         graph = Graph(problem, own, unhindered(problem, own), np.zeros(3))
         picked = graph.cheapest()
+    while lanes := hindered(problem, own, unhindered(problem, own), graph, picked, np.zeros(3)):
+        for x in lanes:
+            interrupt(problem, own, x)
+        graph = Graph(problem, own, unhindered(problem, own), np.zeros(3))
+        picked = graph.cheapest()
     if picked is None:
         return Choice(np.inf, {})
     chosen = {o.patch: o.place(i) for o, i in zip(graph.options, picked, strict=True)}
@@ -213,6 +219,15 @@ def _picked(
     while wanted := _wanted(problem, own, graph, picked):
         for patch in wanted:
             extend(problem, own, patch)
+        found = prospects(problem, own, around, in_place=in_place)
+        graph = Graph(problem, own, found, around.offset, graph.learned, scene.chosen)
+        picked = graph.cheapest()
+    is_least = picked is not None and graph.weight(picked) <= problem.least.get(own.unit, -np.inf)
+    while not is_least and (
+        lanes := hindered(problem, own, found, graph, picked, around.offset, scene.chosen)
+    ):
+        for x in lanes:
+            interrupt(problem, own, x)
         found = prospects(problem, own, around, in_place=in_place)
         graph = Graph(problem, own, found, around.offset, graph.learned, scene.chosen)
         picked = graph.cheapest()

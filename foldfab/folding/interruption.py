@@ -62,6 +62,12 @@ def touched(own: Repertoire) -> list[Lane]:
     return [own.lanes[n] for n in sorted(found)]
 
 
+def hampered(own: Repertoire, found: Prospects) -> list[Lane]:
+    """The lanes whose hinges meet something around the unit that their panels do not meet."""
+    every = (x for many in found.lanes.values() for x in many if may_be_interrupted(own, x))
+    return [x for x in every if _is_hampered(found, x)]
+
+
 def _by_hinges(own: Repertoire, one: int, other: int, pieces: Array) -> bool:
     """Whether a lane has pieces that meet another one by their hinges only; `pieces` (N_s, N_s) are all that meet."""
     firm = np.zeros_like(pieces)
@@ -76,14 +82,16 @@ def _is_hindered(own: Repertoire, found: Prospects, x: Lane) -> bool:
     """Whether the hinges of a lane meet anything that its panels do not meet."""
     if not may_be_interrupted(own, x):
         return False
-    panels = found.panels.get(x.number)
-    if panels is not None and (found.blocked[x.number] & ~panels).any():
-        return True
-    return any(
+    return _is_hampered(found, x) or any(
         _by_hinges(own, x.number, b if a == x.number else a, pieces if a == x.number else pieces.T)
         for (a, b), pieces in own.pieces.items()
         if x.number in (a, b)
     )
+
+
+def _is_hampered(found: Prospects, x: Lane) -> bool:
+    panels = found.panels.get(x.number)
+    return panels is not None and bool((found.blocked[x.number] & ~panels).any())
 
 
 def _least(problem: Problem, found: Prospects) -> float:

@@ -17,11 +17,13 @@ from dataclasses import replace
 import numpy as np
 
 from foldfab.folding import basic
+from foldfab.folding.conflict import compare
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.group import Group, cut_of, posed
+from foldfab.folding.interruption import touched
 from foldfab.folding.ordering import Ordered, after, neighbouring
 from foldfab.folding.problem import Problem
-from foldfab.folding.repertoire import extend
+from foldfab.folding.repertoire import extend, interrupt
 from foldfab.folding.replay import played
 from foldfab.folding.scene import Scene
 from foldfab.folding.symmetry import Signature
@@ -124,6 +126,9 @@ def _group(problem: Problem, scene: Scene, others: list[UnitFold], floor: dict[s
             first = own.plain[patch][0].variant if own.plain[patch] else None
             while own.later[patch] and _surcharge(problem, patch, first, own.later[patch][0]) < spare:
                 extend(problem, own, patch)
+        compare(problem, own, [x for p in unit.patches for x in own.plain[p]])
+        for x in touched(own):
+            interrupt(problem, own, x)
     lanes = {p: repertoire(problem, u).plain[p] for u in units for p in u.patches}
     return Group(problem, scene, units, known, floor, lanes)
 

@@ -116,10 +116,10 @@ def _priced(
     out = taken @ windows_table(windows, steps).T > 0
     out |= basic.too_narrow(sites, windows, steps, problem.thickness)
     held = np.array([x.variant.hinged for x in every]).reshape(-1, 2)
-    is_cut = held != np.array(basic.WHOLE)
+    is_cut = np.any(held != np.array(basic.WHOLE), axis=1)[:, None]
     first, last = np.array(windows).T / steps
     # What is left of an interrupted hinge must be within the window.
-    out |= (is_cut[:, :1] & (first > held[:, :1])) | (is_cut[:, 1:] & (last < held[:, 1:]))
+    out |= is_cut & ((first > held[:, :1]) | (last < held[:, 1:]))
     extra = PREFERENCE * awkwardness(problem, every, offset)[:, None]
     return price, np.where(out, np.inf, price + extra)
 

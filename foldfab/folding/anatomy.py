@@ -80,7 +80,8 @@ def _beside(many: list[Boxes]) -> Boxes:
 def _moving(shape: Shape, panel: float, apart: float, spans: tuple[tuple[float, float], ...], progress: bytes) -> Boxes:
     """The same in the chain's own frame (across, along, rise), from its root.
 
-    Panels end `apart` / 2 from inserted hinges; `spans` holds the extent of the panels and of each inserted hinge along the hinge direction.
+    Panels end `apart` / 2 from inserted hinges.
+    `spans` holds the extent of the panels and of each inserted hinge along the hinge direction.
     """
     angles = tilts(shape, np.frombuffer(progress))
     normal, length = directions(angles)

@@ -11,8 +11,8 @@ from dataclasses import replace
 
 from foldfab.folding import basic
 from foldfab.folding.basic import WHOLE
-from foldfab.folding.congruent import repertoire
 from foldfab.folding.conflict import compare
+from foldfab.folding.congruent import repertoire
 from foldfab.folding.model import Chain
 from foldfab.folding.ordering import after
 from foldfab.folding.problem import Problem

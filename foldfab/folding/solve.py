@@ -160,9 +160,8 @@ def solution(problem: Problem, least: float, ordered: Ordered) -> FoldSolution:
     spent = weight(ordered) - least
     bound = cost if spent < NO_MORE else max(cost - spent, 0.0)
     steps = _steps(problem, ordered.folds)
-    return FoldSolution(
-        problem.scaffold, problem.thickness, chains, tuple(changed), steps, cost, bound, (*_notes(problem, ordered), *interrupted)
-    )
+    notes = (*_notes(problem, ordered), *interrupted)
+    return FoldSolution(problem.scaffold, problem.thickness, chains, tuple(changed), steps, cost, bound, notes)
 
 
 def _steps(problem: Problem, folds: tuple[UnitFold, ...]) -> tuple[Step, ...]:

@@ -223,9 +223,7 @@ def _picked(
         graph = Graph(problem, own, found, around.offset, graph.learned, scene.chosen)
         picked = graph.cheapest()
     is_least = picked is not None and graph.weight(picked) <= problem.least.get(own.unit, -np.inf)
-    while not is_least and (
-        lanes := hindered(problem, own, found, graph, picked, around.offset, scene.chosen)
-    ):
+    while not is_least and (lanes := hindered(problem, own, found, graph, picked, around.offset, scene.chosen)):
         for x in lanes:
             interrupt(problem, own, x)
         found = prospects(problem, own, around, in_place=in_place)

@@ -10,11 +10,13 @@ import pytest
 from foldfab.folding import unit_fold
 from foldfab.folding.basic import WHOLE
 from foldfab.folding.congruent import repertoire
+from foldfab.folding.graph import Graph
 from foldfab.folding.improve import weight
 from foldfab.folding.interruption import touched
 from foldfab.folding.model import FoldSolution
 from foldfab.folding.ordering import floors
 from foldfab.folding.problem import Problem
+from foldfab.folding.prospects import unhindered
 from foldfab.folding.repertoire import Lane, interrupt
 from foldfab.folding.scene import open_scene
 from foldfab.folding.solve import _ordered
@@ -94,8 +96,7 @@ def test_windows_hold_the_stretch(problem: Make, butting: tuple[Part, ...]) -> N
     made = problem(butting, slanting=False)
     own = repertoire(made, made.units[0])
     interrupt(made, own, own.plain["back"][0])
-    found = unit_fold.unhindered(made, own)
-    options = unit_fold.Graph(made, own, found, np.zeros(3)).options[made.units[0].patches.index("back")]
+    options = Graph(made, own, unhindered(made, own), np.zeros(3)).options[made.units[0].patches.index("back")]
     steps = made.options.shrink_steps
     for i in np.nonzero(np.isfinite(options.weight[:-1]))[0].tolist():
         lane, (low, high) = _place(options.place(i))

@@ -17,7 +17,6 @@ from dataclasses import replace
 import numpy as np
 
 from foldfab.folding import basic
-from foldfab.folding.conflict import compare
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.group import Group, cut_of, posed
 from foldfab.folding.interruption import touched
@@ -69,7 +68,7 @@ def optimal(
         least = min(least, limit - rest_counts + sum(floor[n] for n in names))
         others = [folds[n] for n in order if n not in names] if is_whole else []
         group = _group(problem, scene, others, {n: floor[n] for n in names}, least)
-        found, group_bound = _solved(group, problem.work.left / (len(left) - k))
+        found, group_bound = _best(group, problem.work.left / (len(left) - k))
         bound += min(group_bound, least)
         if found is not None:
             rest = [n for n in order if n not in names] if is_whole else []
@@ -107,7 +106,7 @@ def other(
 ) -> tuple[Ordered | None, float]:  # fmt: skip
     """The best order with other modifications than those excluded that counts less than `most`, and its bound."""
     group = replace(_group(problem, scene, [], dict(floor), most), excluded=excluded)
-    folds, bound = _solved(group, work)
+    folds, bound = _best(group, work)
     return (Ordered(folds, ()) if folds is not None else None), bound
 
 
@@ -126,9 +125,6 @@ def _group(problem: Problem, scene: Scene, others: list[UnitFold], floor: dict[s
             first = own.plain[patch][0].variant if own.plain[patch] else None
             while own.later[patch] and _surcharge(problem, patch, first, own.later[patch][0]) < spare:
                 extend(problem, own, patch)
-        compare(problem, own, [x for p in unit.patches for x in own.plain[p]])
-        for x in touched(own):
-            interrupt(problem, own, x)
     lanes = {p: repertoire(problem, u).plain[p] for u in units for p in u.patches}
     return Group(problem, scene, units, known, floor, lanes)
 
@@ -139,6 +135,27 @@ def _surcharge(problem: Problem, patch: str, first: basic.Variant | None, varian
         return 0.0
     more = basic.cost(variant.hinges, 1.0, problem.options) - basic.cost(first.hinges, 1.0, problem.options)
     return problem.sites[patch].importance * more
+
+
+def _best(group: Group, work: float) -> tuple[tuple[UnitFold, ...] | None, float]:
+    """The cheapest folds of the group as by `_solved`, first with those lanes that there are.
+
+    Then with all hinges interrupted that meet anything in their unit, where any do: before that there is no bound.
+    """
+    problem = group.problem
+    until = problem.work.spent + work
+    found, bound = _solved(group, work)
+    wider, is_wider = dict(group.lanes), False
+    for unit in group.units:
+        own = repertoire(problem, unit)
+        for x in touched(own):
+            interrupt(problem, own, x)
+            is_wider = True
+        wider |= {p: (*wider[p], *(x for x in own.plain[p] if x not in wider[p])) for p in unit.patches}
+    if not is_wider:
+        return found, bound
+    better, bound = _solved(replace(group, lanes=wider), until - problem.work.spent)
+    return better or found, bound
 
 
 def _solved(group: Group, work: float) -> tuple[tuple[UnitFold, ...] | None, float]:

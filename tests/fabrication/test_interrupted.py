@@ -37,13 +37,18 @@ def test_it_works_and_says_where(made: Assembly, assert_printable: Callable[[Bod
 
 
 def test_there_are_knuckles_on_both_sides_and_none_between(made: Assembly) -> None:
-    low = next(body for body in made.bodies if body.name == "low")
-    ground = solids.mesh(low.vertices, low.faces)
-    # Above the plate, at the back's first axis: 20 mm without a foot, and feet in what remains.
-    between = solids.box(np.array([-42.0, -10.0, 2.1]), np.array([-38.0, 10.0, 8.0]))
-    assert solids.overlap(ground, between) == 0
-    for start, end in ((-50.0, -10.2), (10.2, 50.0)):
-        assert solids.overlap(ground, solids.box(np.array([-42.0, start, 2.1]), np.array([-38.0, end, 8.0]))) > 10
+    chain = made.solution.chain("back")
+    low = next(body for body in made.bodies if body.name == chain.anchor)
+    ground = solids.from_mesh(low.vertices, low.faces)
+
+    def feet(start: float, end: float) -> float:
+        """What stands on the plate around the back's first axis, from there to there along it, mm³."""
+        ends = chain.root + np.outer([start, end], chain.along)
+        half = np.array([2.0, 0.0, 2.0])
+        return solids.overlap(ground, solids.box(ends.min(0) - half, ends.max(0) + half))
+
+    assert feet(-10, 10) == 0
+    assert feet(-50, -10.2) > 10 and feet(10.2, 50) > 10
 
 
 def test_both_stretches_have_as_many_knuckles_as_their_width_wants(interrupted: FoldSolution) -> None:

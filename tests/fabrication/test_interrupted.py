@@ -44,7 +44,7 @@ def test_there_are_knuckles_on_both_sides_and_none_between(made: Assembly) -> No
     def feet(start: float, end: float) -> float:
         """What stands on the plate around the back's first axis, from there to there along it, mm³."""
         ends = chain.root + np.outer([start, end], chain.along)
-        half = np.array([2.0, 0.0, 2.0])
+        half = 2.0 * (np.abs(chain.across) + np.abs(chain.rise))
         return solids.overlap(ground, solids.box(ends.min(0) - half, ends.max(0) + half))
 
     assert feet(-10, 10) == 0

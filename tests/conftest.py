@@ -64,6 +64,11 @@ def make_pair(
     return tuple(made)
 
 
+def make_butting(depth: float = 100, apart: float = 1) -> tuple[Part, ...]:
+    side = make_box("side", (-18 + apart, 0, 30), (40, K, 56))
+    return board("low", 0, 160, 160), board("high", 60, 160, 160), wall("back", -40, 0, 60, depth), side
+
+
 GROUND, CEILING = board("ground", 0), board("ceiling", 84)
 
 FURNITURE: dict[str, tuple[Part, ...]] = {
@@ -165,6 +170,18 @@ def board_at() -> Callable[..., Part]:
 def wall_at() -> Callable[..., Part]:
     """Makes an upright wall that faces x between two boards: name, x, low, high, depth, y."""
     return wall
+
+
+@pytest.fixture(scope="session")
+def butting_on() -> Callable[..., tuple[Part, ...]]:
+    """Makes a wall `back` and one that butts on its middle, both between two boards: how deep, and how far apart."""
+    return make_butting
+
+
+@pytest.fixture(scope="session")
+def butting() -> tuple[Part, ...]:
+    """The same so close that the side meets the back's knuckles but not its panels."""
+    return make_butting()
 
 
 @pytest.fixture(scope="session")

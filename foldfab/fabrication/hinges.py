@@ -12,6 +12,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import pairwise
 
+import numpy as np
+
 from foldfab.fabrication.shapes import Shape, box, rod
 from foldfab.fabrication.walls import LINE
 from foldfab.folding.model import Thickness
@@ -52,7 +54,7 @@ def knuckles(span: Array, thickness: Thickness, breaks: tuple[Mark, ...] = ()) -
     A span of the least width gets three; the ends are no narrower than a socket needs. Beside each of the `breaks`
     there is a group; where it would be narrower than that, the hinge ends.
     """
-    ends = [float(span[0]), *(end for mark in breaks for end in mark), float(span[1])]
+    ends = [float(span[0]), *(float(np.clip(end, *span)) for mark in breaks for end in mark), float(span[1])]
     stretches = [mark for mark in zip(ends[::2], ends[1::2], strict=True) if mark[1] - mark[0] >= thickness.hinge_width]
     if not breaks or not stretches:
         return _row(float(span[0]), float(span[1]), thickness)

@@ -25,6 +25,7 @@ from foldfab.fabrication.seams import fit_of
 from foldfab.fabrication.shapes import Shape
 from foldfab.fabrication.soles import PIECE, eased
 from foldfab.fabrication.solids import Solid
+from foldfab.folding.basic import holds
 from foldfab.folding.model import Chain, FoldSolution
 from foldfab.geometry.arrays import Array
 from foldfab.recipe.model import Posture
@@ -46,7 +47,14 @@ def with_breaks(solution: FoldSolution, posture: Posture) -> FoldSolution:
     """The solution with a stretch free of knuckles in all hinges of a patch where its panels will have to be cut."""
     if not cuts_parts(solution, posture):
         return solution
-    return replace(solution, chains=tuple(replace(c, breaks=_breaks(solution, c)) for c in solution.chains))
+    return replace(solution, chains=tuple(_with_breaks(solution, c) for c in solution.chains))
+
+
+def _with_breaks(solution: FoldSolution, chain: Chain) -> Chain:
+    """A chain with more breaks in its hinges, as long as each still has a stretch that holds it."""
+    marks = sorted([*chain.breaks, *_breaks(solution, chain)])
+    made = replace(chain, breaks=tuple(_joined(marks)))
+    return made if not chain.breaks or holds(made, solution.thickness) else chain
 
 
 def _breaks(solution: FoldSolution, chain: Chain) -> tuple[Mark, ...]:
@@ -73,11 +81,16 @@ def _lines(reach: Mark, width: float, bed: tuple[float, float]) -> set[float]:
 
 
 def _merged(middles: set[float]) -> list[Mark]:
+    return _joined([(middle - ROOM, middle + ROOM) for middle in sorted(middles)])
+
+
+def _joined(marks: list[Mark]) -> list[Mark]:
+    """Stretches in ascending order, those that overlap as one."""
     found: list[Mark] = []
-    for middle in sorted(middles):
-        mark = (middle - ROOM, middle + ROOM)
+    for mark in marks:
         if found and mark[0] <= found[-1][1]:
-            mark = (found.pop()[0], mark[1])
+            first = found.pop()
+            mark = (first[0], max(first[1], mark[1]))
         found.append(mark)
     return found
 

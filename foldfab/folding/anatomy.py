@@ -30,7 +30,7 @@ _MIRRORED_AXES = np.array([[1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [-1.0, 1.0, 1.0]])
 
 
 Spans = tuple[tuple[float, float], ...]
-"""Extents along the hinge direction of the panels and of each inserted hinge, mm."""
+"""Extents along the hinge direction of the panels, then of the knuckles of each inserted hinge, stretch by stretch, mm."""
 
 
 class Foot(NamedTuple):
@@ -86,39 +86,55 @@ def base_boxes(base: BasePatch, thickness: Thickness) -> Boxes:
 
 
 def moving_boxes(chain: Chain, thickness: Thickness, progress: Array) -> Boxes:
-    """Slabs and knuckles (k, 2 m - 1) of a chain at each progress (k,), relative to the anchor's open position."""
+    """Slabs and knuckles (k, m + s (m - 1)) of a chain at each progress (k,), relative to the anchor's open position.
+
+    Its inserted hinges have knuckles in s stretches each.
+    """
     when = np.asarray(progress, dtype=np.float64).tobytes()
-    made = _moving(chain.to_the_right, chain.panel, thickness.gap, _spans(chain), when)
+    made = _moving(chain.to_the_right, chain.panel, _apart(chain, thickness), _spans(chain), when)
     return _placed(chain, made)
 
 
 @lru_cache(REMEMBERED)
-def _moving(shape: Shape, panel: float, gap: float, spans: Spans, progress: bytes) -> Boxes:
-    """The same in the frame of the chain to the right (across, along, rise), from its root."""
+def _moving(shape: Shape, panel: float, apart: float, spans: Spans, progress: bytes) -> Boxes:
+    """The same in the frame of the chain to the right (across, along, rise), from its root.
+
+    Panels end `apart` / 2 from inserted hinges.
+    """
     normal, length = directions(tilts(shape, np.frombuffer(progress)))
     hinges = joined(shape, normal, length)
     frames, count = normal.shape[:2]
-    axes = np.zeros((frames, 2 * count - 1, 3, 3))
+    every, rows = count + len(spans) - 1, (len(spans) - 1) // max(count - 1, 1)
+    axes = np.zeros((frames, every, 3, 3))
     axes[:, :count, 0, ::2], axes[:, :count, 2, ::2] = normal, length
     axes[:, :, 1, 1] = 1.0
-    axes[:, count:] = axes[:, : count - 1]
-    low = [0.0, *[gap / 2] * (count - 1)]
-    high = [*(whole - gap / 2 for whole in shape.lengths[:-1]), shape.lengths[-1]]
-    center = np.zeros((frames, 2 * count - 1, 3))
+    low = [0.0, *[apart / 2] * (count - 1)]
+    high = [*(whole - apart / 2 for whole in shape.lengths[:-1]), shape.lengths[-1]]
+    center = np.zeros((frames, every, 3))
     center[:, :count, ::2] = hinges[:, :-1] - np.array(shape.offsets[:-1])[:, None] * normal
     center[:, :count, ::2] += length * np.array([(a + b) / 2 for a, b in zip(low, high, strict=True)])[:, None]
-    center[:, count:, ::2] = hinges[:, 1:-1]
+    for row in range(rows):
+        own = slice(count + row * (count - 1), count + (row + 1) * (count - 1))
+        axes[:, own], center[:, own, ::2] = axes[:, : count - 1], hinges[:, 1:-1]
     center[:, :, 1] = [*[(spans[0][0] + spans[0][1]) / 2] * count, *((a + b) / 2 for a, b in spans[1:])]
     width = (spans[0][1] - spans[0][0]) / 2
     slabs = [(panel / 2, width, (b - a) / 2) for a, b in zip(low, high, strict=True)]
-    half = np.empty((frames, 2 * count - 1, 3))
+    half = np.empty((frames, every, 3))
     half[:] = [*slabs, *((panel / 2, (b - a) / 2, panel / 2) for a, b in spans[1:])]
     return Boxes(center, axes, half)
 
 
+def _apart(chain: Chain, thickness: Thickness) -> float:
+    """How far panels end from each other; without thickness they are longer by what makes up for knuckles and gap."""
+    return -chain.panel if chain.breaks else thickness.gap
+
+
 def _spans(chain: Chain) -> Spans:
     first, last = chain.span.tolist()
-    return ((first, last), *((low, high) for low, high in chain.hinge_spans[1:-1].tolist()))
+    if not chain.breaks:
+        return ((first, last), *((low, high) for low, high in chain.hinge_spans[1:-1].tolist()))
+    hinges = [chain.stretches(i) for i in range(1, len(chain.lengths))]
+    return ((first, last), *(one for row in zip(*hinges, strict=True) for one in row))
 
 
 def resting_boxes(chain: Chain, thickness: Thickness, progress: float) -> Boxes:
@@ -132,7 +148,7 @@ def resting_boxes(chain: Chain, thickness: Thickness, progress: float) -> Boxes:
 def swept_boxes(rides: Sequence[Ride], thickness: Thickness) -> tuple[Boxes, Indices]:
     """Panels, knuckles and feet (k, n) of all chains that ride at once, and of which of them each is (n,).
 
-    Those of a chain follow one another: slabs, knuckles, the foot on its anchor and last that on its far base.
+    Those of a chain follow one another: slabs, knuckles, the feet on its anchor and last those on its far base.
     """
     made = [_carried(ride, thickness) for ride in rides]
     found = Boxes(*(np.concatenate([getattr(m, f) for m in made], axis=1) for f in ("center", "axes", "half")))
@@ -140,14 +156,14 @@ def swept_boxes(rides: Sequence[Ride], thickness: Thickness) -> tuple[Boxes, Ind
 
 
 def _carried(ride: Ride, thickness: Thickness) -> Boxes:
-    chain, ends = ride.chain, (0, -1) if ride.far is not None else (0,)
-    feet = tuple(_foot(chain, thickness, end) for end in ends)
-    when = ride.progress.tobytes()
-    made = _placed(chain, _standing(chain.to_the_right, chain.panel, thickness.gap, _spans(chain), feet, when))
-    on_far = 1 if ride.far is not None else 0
-    made.center[:, : made.center.shape[1] - on_far] += ride.near[:, None]
+    chain, near = ride.chain, _feet(ride.chain, thickness, 0)
+    far = _feet(chain, thickness, -1) if ride.far is not None else ()
+    apart, when = _apart(chain, thickness), ride.progress.tobytes()
+    made = _placed(chain, _standing(chain.to_the_right, chain.panel, apart, _spans(chain), near, far, when))
+    on_near = made.center.shape[1] - len(far)
+    made.center[:, :on_near] += ride.near[:, None]
     if ride.far is not None:
-        made.center[:, -1] += ride.far
+        made.center[:, on_near:] += ride.far[:, None]
     return made
 
 
@@ -162,31 +178,34 @@ def _placed(chain: Chain, made: Boxes) -> Boxes:
 
 
 @lru_cache(REMEMBERED)
-def _standing(shape: Shape, panel: float, gap: float, spans: Spans, feet: tuple[Foot, ...], progress: bytes) -> Boxes:
-    moving = _moving(shape, panel, gap, spans, progress)
+def _standing(
+    shape: Shape, panel: float, apart: float, spans: Spans, near: tuple[Foot, ...], far: tuple[Foot, ...],
+    progress: bytes,
+) -> Boxes:  # fmt: skip
+    moving = _moving(shape, panel, apart, spans, progress)
     frames, count = moving.center.shape[:2]
-    size = (frames, count + len(feet))
+    size = (frames, count + len(near) + len(far))
     found = Boxes(np.zeros((*size, 3)), np.zeros((*size, 3, 3)), np.empty((*size, 3)))
     found.center[:, :count], found.axes[:, :count], found.half[:, :count] = moving.center, moving.axes, moving.half
     found.axes[:, count:] = np.eye(3)
-    for i, foot in enumerate(feet, count):
+    for i, foot in enumerate((*near, *far), count):
         found.center[:, i, 1], found.center[:, i, 2], found.half[:, i] = foot.middle, foot.height, foot.half
-    if len(feet) == 2:
-        across, rise = open_and_folded(shape)[0]
-        found.center[:, -1] = across, feet[1].middle, rise - feet[1].height
+    across, rise = open_and_folded(shape)[0] if far else (0.0, 0.0)
+    for i, foot in enumerate(far, count + len(near)):
+        found.center[:, i] = across, foot.middle, rise - foot.height
     return found
 
 
 def anchor_feet(chain: Chain, thickness: Thickness) -> Boxes:
-    """The foot or plinth (1,) of the chain on its anchor, open position."""
-    return _foot_box(chain, _foot(chain, thickness, 0), chain.root, chain.rise)
+    """The feet (n,) of the chain on its anchor, or its plinth (1,), open position."""
+    return _feet_boxes(chain, _feet(chain, thickness, 0), chain.root, chain.rise)
 
 
 def far_feet(chain: Chain, thickness: Thickness) -> Boxes:
-    """The foot or plinth of the chain on its far base (1,), or none (0,) for a T-scaffold, open position."""
+    """The same (n,) on its far base, or none (0,) for a T-scaffold, open position."""
     if chain.far is None:
         return Boxes(np.zeros((0, 3)), np.zeros((0, 3, 3)), np.zeros((0, 3)))
-    return _foot_box(chain, _foot(chain, thickness, -1), chain.root + start(chain), -chain.rise)
+    return _feet_boxes(chain, _feet(chain, thickness, -1), chain.root + start(chain), -chain.rise)
 
 
 def pockets(chain: Chain, end: int, thickness: Thickness) -> Boxes:
@@ -210,14 +229,21 @@ def pockets(chain: Chain, end: int, thickness: Thickness) -> Boxes:
     return Boxes(center[None], chain.basis[None], half)
 
 
-def _foot(chain: Chain, thickness: Thickness, end: int) -> Foot:
+def _feet(chain: Chain, thickness: Thickness, end: int) -> tuple[Foot, ...]:
     """From the base face or the pocket's floor, below the axis seen from the base, to the far side of the knuckle."""
     thickness, pad = thickness.of(chain.panel), chain.pads[end]
     low, high = -thickness.axis_height - max(pad, 0.0), thickness.panel / 2
-    first, last = (chain.span if pad > 0 else chain.hinge_spans[end]).tolist()
-    return Foot((first + last) / 2, (low + high) / 2, (thickness.panel / 2, (last - first) / 2, (high - low) / 2))
+    if chain.breaks and pad <= 0:
+        spans = chain.stretches(end)
+    else:
+        first, last = (chain.span if pad > 0 else chain.hinge_spans[end]).tolist()
+        spans = ((first, last),)
+    return tuple(
+        Foot((first + last) / 2, (low + high) / 2, (thickness.panel / 2, (last - first) / 2, (high - low) / 2))
+        for first, last in spans
+    )
 
 
-def _foot_box(chain: Chain, foot: Foot, axis: Array, outward: Array) -> Boxes:
-    center = axis + outward * foot.height + chain.along * foot.middle
-    return Boxes(center[None], chain.basis[None], np.array([foot.half]))
+def _feet_boxes(chain: Chain, feet: tuple[Foot, ...], axis: Array, outward: Array) -> Boxes:
+    center = [axis + outward * foot.height + chain.along * foot.middle for foot in feet]
+    return Boxes(np.array(center), np.repeat(chain.basis[None], len(feet), axis=0), np.array([f.half for f in feet]))

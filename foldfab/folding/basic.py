@@ -19,6 +19,8 @@ from foldfab.folding.site import Site
 from foldfab.geometry.arrays import Array, Bools
 from foldfab.recipe.model import FoldOptions
 
+WHOLE = (0.0, 1.0)
+"""Hinges that have knuckles all along."""
 STEEPEST = np.radians(75.0)
 """A patch that leans more than this is too flat to be folded."""
 
@@ -33,6 +35,8 @@ class Variant:
     pads: tuple[float, float] = (0.0, 0.0)
     extra: float = 0.0
     """What is added to the thickness of its panels, mm."""
+    hinged: tuple[float, float] = WHOLE
+    """The share of the patch's width in which its hinges have knuckles."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,10 +122,27 @@ def chain(site: Site, variant: Variant, span: Array, thickness: Thickness) -> Ch
     start, end = span.tolist()
     ends = [_on(start, end, held, thickness) for held in site.held]
     hinge_spans = np.array([ends[0], *([(start, end)] * variant.hinges), ends[1]])
-    return Chain(
+    made = Chain(
         site.patch.name, site.anchor, site.far, variant.mechanism, root, site.across, site.along, site.rise, site.lean,
-        turn, lengths, offsets, span, hinge_spans, variant.pads, thickness.panel,
+        turn, lengths, offsets, span, hinge_spans, variant.pads, thickness.panel, _breaks(site, variant, thickness),
     )  # fmt: skip
+    return made if not made.breaks or holds(made, thickness) else None
+
+
+def holds(chain: Chain, thickness: Thickness) -> bool:
+    """Whether every hinge of a chain has, beside its breaks, a stretch that is wide enough for one."""
+    least = thickness.of(chain.panel).hinge_width - 1e-9
+    return all(
+        any(high - low >= least for low, high in chain.stretches(hinge)) for hinge in range(len(chain.bodies) - 1)
+    )
+
+
+def _breaks(site: Site, variant: Variant, thickness: Thickness) -> tuple[tuple[float, float], ...]:
+    """What an interrupted hinge leaves free, half a gap on from every cut."""
+    width, (first, last) = site.patch.width, variant.hinged
+    low, high = width * (first - 0.5) + thickness.gap / 2, width * (last - 0.5) - thickness.gap / 2
+    below, above = (-width / 2 - thickness.gap, low), (high, width / 2 + thickness.gap)
+    return ((below,) if first > 0 else ()) + ((above,) if last < 1 else ())
 
 
 def modification(site: Site, option: Option, options: FoldOptions, reason: str) -> Modification:

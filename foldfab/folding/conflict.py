@@ -16,6 +16,7 @@ from functools import cache
 import numpy as np
 
 from foldfab.folding.balance import can_agree
+from foldfab.folding.basic import WHOLE
 from foldfab.folding.lanes import Lane
 from foldfab.folding.problem import Problem
 from foldfab.folding.repertoire import Repertoire, cuts_of, lane, regions, resting, swept
@@ -39,17 +40,17 @@ def compare(problem: Problem, own: Repertoire, many: Iterable[Lane]) -> None:
     known = [own.lanes[n] for n in sorted(own.compared)]
     same, once = _never_compared(own, fresh)
     own.compared.update(x.number for x in fresh)
-    cuts = cuts_of(own)
+    cuts, same, once = _told_apart(cuts_of(own), same, once)
     if problem.options.collisions == "regions":
         _learn(own, _regions_met(problem, own, fresh, known, cuts, same, once))
         known, fresh = [], []
     for section in range(own.nominal.sections):
-        moving = swept(problem, own, fresh, section)
-        others = swept(problem, own, known, section)
+        moving = parted(own, swept(problem, own, fresh, section))
+        others = parted(own, swept(problem, own, known, section))
         pairs = [(moving, moving, once), (moving, others, same)]
         if own.nominal.sections > 1:
-            pairs += [(moving, _beside(problem, own, [*fresh, *known], fresh, section), same)]
-            pairs += [(others, _beside(problem, own, fresh, known, section), same)]
+            pairs += [(moving, parted(own, _beside(problem, own, [*fresh, *known], fresh, section)), same)]
+            pairs += [(others, parted(own, _beside(problem, own, fresh, known, section)), same)]
         for a, b, apart in pairs:
             if a is not None and b is not None:
                 _learn(own, conflicts(a, b, cuts, apart))
@@ -61,12 +62,27 @@ def _regions_met(
     problem: Problem, own: Repertoire, fresh: list[Lane], known: list[Lane], cuts: Array, same: Bools, once: Bools
 ) -> dict[tuple[int, int], Bools]:
     """The paper's own test: folding time intervals overlap, and so do the regions that patches cover when folded."""
-    start = np.array([x.active.start for x in own.lanes])
-    stop = np.array([x.active.stop for x in own.lanes])
+    start, stop = (np.repeat([getattr(x.active, end) for x in own.lanes], 2) for end in ("start", "stop"))
     apart = (start[:, None] >= stop) | (start >= stop[:, None])
-    new = regions(problem, own, fresh)
+    new = parted(own, regions(problem, own, fresh))
     met = conflicts(new, new, cuts, once | apart)
-    return met | conflicts(new, regions(problem, own, known), cuts, same | apart) if known else met
+    old = parted(own, regions(problem, own, known)) if known else None
+    return met | conflicts(new, old, cuts, same | apart) if old is not None else met
+
+
+def parted(own: Repertoire, whole: Batch | None) -> Batch | None:
+    """A batch of lanes with each told apart in two: panels have twice its number, knuckles and feet one more."""
+    if whole is None:
+        return None
+    begins = np.append(True, np.diff(whole.lane) != 0)
+    place = np.arange(len(whole)) - np.maximum.accumulate(np.where(begins, np.arange(len(whole)), 0))
+    panels = np.array([len(x.chain.lengths) for x in own.lanes])
+    return replace(whole, lane=2 * whole.lane + (place >= panels[whole.lane]))
+
+
+def _told_apart(cuts: Array, *never: Bools) -> tuple[Array, ...]:
+    """Cutting points, and which lanes are never compared, for lanes that are told apart."""
+    return np.repeat(cuts, 2, axis=0), *(np.repeat(np.repeat(many, 2, axis=0), 2, axis=1) for many in never)
 
 
 @cache
@@ -80,15 +96,17 @@ def windows_table(windows: tuple[tuple[int, int], ...], steps: int) -> Array:
 
 def table(
     problem: Problem, own: Repertoire, first: tuple[Lane, ...], second: tuple[Lane, ...], inside: Array, *,
-    in_modes: bool = False,
+    in_modes: bool = False, is_bare: bool = False,
 ) -> Bools | None:  # fmt: skip
     """Which options of one patch conflict with which of another: (n · w + 1, m · w + 1), lane by lane, deletion last.
 
-    `inside` (w, N_s) says which pieces each window holds. None where nothing conflicts.
+    `inside` (w, N_s) says which pieces each window holds. None where nothing conflicts. Where `is_bare`, as if hinges
+    that may still be interrupted were not there.
     """
-    key = (tuple(x.number for x in first), tuple(x.number for x in second), in_modes)
+    key: object = (tuple(x.number for x in first), tuple(x.number for x in second), in_modes)
+    key = (key, *(tuple(may_be_interrupted(own, x) for x in many) for many in (first, second))) if is_bare else key
     if key not in own.tables:
-        made = _table(problem, own, first, second, inside, in_modes=in_modes)
+        made = _table(problem, own, first, second, inside, in_modes=in_modes, is_bare=is_bare)
         own.tables[key] = made if made.any() else np.zeros((0, 0), dtype=bool)
     found = own.tables[key]
     return found if found.size else None
@@ -212,14 +230,16 @@ def meet_across(problem: Problem, own: Repertoire, many: list[Lane], others: lis
 
 
 def _learn(own: Repertoire, met: Mapping[tuple[int, int], Bools]) -> None:
+    """Keeps which pieces of lanes, told apart, meet."""
     for (a, b), pieces in met.items():
-        key, own_pieces = ((a, b), pieces) if a < b else ((b, a), pieces.T)
-        own.pieces[key] = own.pieces[key] | own_pieces if key in own.pieces else own_pieces
+        key, found = ((a, b), pieces) if a < b else ((b, a), pieces.T)
+        for known, at in ((own.parts, key), (own.pieces, (key[0] // 2, key[1] // 2))):
+            known[at] = known[at] | found if at in known else found
 
 
 def _table(
     problem: Problem, own: Repertoire, first: tuple[Lane, ...], second: tuple[Lane, ...], inside: Array, *,
-    in_modes: bool,
+    in_modes: bool, is_bare: bool,
 ) -> Bools:  # fmt: skip
     steps, count = inside.shape[1], len(inside)
     met = np.zeros((len(first), steps, len(second), steps), dtype=bool)
@@ -228,11 +248,27 @@ def _table(
         for j, b in enumerate(second):
             for p in {a.number, own.plain_of.get(a.number, a.number)}:
                 for q in {b.number, own.plain_of.get(b.number, b.number)}:
-                    pieces = own.pieces.get((min(p, q), max(p, q)))
+                    pieces = _without_hinges(own, p, q) if is_bare else own.pieces.get((min(p, q), max(p, q)))
                     if pieces is not None:
                         met[i, :, j] |= pieces if p < q else pieces.T
             never[i, j] = not (in_modes or drag_alike(a, b)) or not snap_alike(problem, own, a, b)
     return _of_windows(met, never, inside, count)
+
+
+def may_be_interrupted(own: Repertoire, x: Lane) -> bool:
+    """Whether there may be more lanes that do the same with less of its hinges."""
+    return x.variant.hinged == WHOLE and x.number not in own.interrupted
+
+
+def _without_hinges(own: Repertoire, p: int, q: int) -> Bools | None:
+    """Which pieces of two lanes meet without what may still be interrupted; those of the lower number first."""
+    found: Bools | None = None
+    for i in range(1 if may_be_interrupted(own, own.lanes[p]) else 2):
+        for j in range(1 if may_be_interrupted(own, own.lanes[q]) else 2):
+            key = (2 * p + i, 2 * q + j) if p < q else (2 * q + j, 2 * p + i)
+            if key in own.parts:
+                found = own.parts[key] if found is None else found | own.parts[key]
+    return found
 
 
 def _of_windows(met: Bools, never: Bools, inside: Array, count: int) -> Bools:

@@ -87,6 +87,8 @@ def copied(problem: Problem, known: Repertoire, then: Pose, unit: Unit, now: Pos
     made.plain.update({patch[p]: tuple(lanes[x.number] for x in many) for p, many in known.plain.items()})
     made.later.update({patch[p]: list(many) for p, many in known.later.items()})
     made.pieces.update(known.pieces)
+    made.parts.update(known.parts)
+    made.interrupted.update(known.interrupted)
     made.plain_of.update(known.plain_of)
     made.compared.update(known.compared)
     made.tables.update(known.tables)

@@ -36,7 +36,10 @@ class Graph:
         offset: Array,
         learned: Iterable[Lesson] = (),
         chosen: Mapping[str, Option] | None = None,
+        *,
+        is_bare: bool = False,
     ) -> None:
+        """Where `is_bare`, as if hinges that may still be interrupted were not there."""
         self.patches, self.work = own.unit.patches, problem.work
         options = options_of(problem, found, offset)
         self.options = [options[p] for p in self.patches]
@@ -45,7 +48,7 @@ class Graph:
         in_modes = len(self.patches) > MANY and any(x.drag is not None for x in own.lanes)
         self.modes: list[list[Bools]] = self._modes(modes(own, found.lanes)) if in_modes else []
         if len(self.patches) > 1:
-            self._compare(problem, own, found, in_modes=in_modes)
+            self._compare(problem, own, found, in_modes=in_modes, is_bare=is_bare)
         self._treat_alike(problem, chosen or {})
         self.forbidden: set[Combination] = set()
         self.gaps: list[float] = []
@@ -57,13 +60,13 @@ class Graph:
                 continue
             self.learn(tuple(o.index(place) for o, place in zip(self.options, places, strict=True)), clash)
 
-    def _compare(self, problem: Problem, own: Repertoire, found: Prospects, *, in_modes: bool) -> None:
+    def _compare(self, problem: Problem, own: Repertoire, found: Prospects, *, in_modes: bool, is_bare: bool) -> None:
         """Finds the options of different patches that exclude each other."""
         compare(problem, own, (x for many in found.lanes.values() for x in many))
         inside = windows_table(self.options[0].windows, problem.options.shrink_steps)
         place = {p: g for g, p in enumerate(self.patches)}
         for a, b in neighbours(own, found.lanes, in_modes=in_modes):
-            made = table(problem, own, found.lanes[a], found.lanes[b], inside, in_modes=in_modes)
+            made = table(problem, own, found.lanes[a], found.lanes[b], inside, in_modes=in_modes, is_bare=is_bare)
             if made is not None:
                 self.tables[place[a], place[b]] = made
 

@@ -219,6 +219,12 @@ class Chain:
             return (self.patch,)
         return tuple(f"{self.patch}/{i + 1}" for i in range(len(self.lengths)))
 
+    def stretches(self, hinge: int) -> tuple[tuple[float, float], ...]:
+        """What its breaks leave of a hinge, by its number, along `along` relative to `root`, mm."""
+        low, high = self.hinge_spans[hinge].tolist()
+        ends = [low, *(min(max(end, low), high) for mark in self.breaks for end in mark), high]
+        return tuple((a, b) for a, b in zip(ends[::2], ends[1::2], strict=True) if b > a)
+
     @property
     def bodies(self) -> tuple[str, ...]:
         """Names of all that its hinges join, in their order: anchor, panels and the far base."""

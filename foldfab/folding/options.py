@@ -85,7 +85,7 @@ class Options:
             lanes = [k for k, x in enumerate(self.lanes) if x.comes_past(depth)]
         elif place is not None:
             own = place[0].variant
-            lanes = [k for k, x in enumerate(self.lanes) if replace(x.variant, side=own.side) == own]
+            lanes = [k for k, x in enumerate(self.lanes) if replace(x.variant, side=own.side, hinged=own.hinged) == own]
         else:
             return [index]
         found = [k * len(self.windows) + w for k in lanes for w in range(len(self.windows))]
@@ -121,6 +121,11 @@ def _priced(
     out = taken @ windows_table(windows, steps).T > 0
     narrow = _narrow(problem, windows)
     out |= np.array([narrow[x.patch] for x in every], dtype=bool).reshape(out.shape)
+    held = np.array([x.variant.hinged for x in every]).reshape(-1, 2)
+    is_cut = np.any(held != np.array(basic.WHOLE), axis=1)[:, None]
+    first, last = np.array(windows).T / steps
+    # What is left of an interrupted hinge must be within the window.
+    out |= is_cut & ((first > held[:, :1]) | (last < held[:, 1:]))
     extra = PREFERENCE * awkwardness(problem, every, offset)[:, None]
     return price, np.where(out, np.inf, price + extra)
 

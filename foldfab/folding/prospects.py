@@ -9,10 +9,12 @@ figure 15(b). The choice decides by cost.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from foldfab.folding.basic import WHOLE
+from foldfab.folding.conflict import parted
 from foldfab.folding.lanes import Lane
 from foldfab.folding.outline import leaves_box
 from foldfab.folding.problem import Problem
@@ -42,6 +44,8 @@ class Prospects:
     """By lane, the owners of what it meets."""
     met: Mapping[int, set[int]]
     """By lane, the boxes around the unit that it meets; -1 for the bounds that it must keep to."""
+    panels: Room = field(default_factory=dict)
+    """By lane that has any, the pieces of which panels meet something; in the others that are blocked hinges do."""
 
 
 def prospects(problem: Problem, own: Repertoire, around: Surroundings, *, in_place: bool) -> Prospects:
@@ -53,11 +57,13 @@ def prospects(problem: Problem, own: Repertoire, around: Surroundings, *, in_pla
     _look_at(problem, own, around, every, room, met)
     lanes = {}
     for patch, many in plain.items():
-        raised = [r for x in many if room[x.number].any() for r in _raised(problem, own, around, x, room, met)]
+        low = [x for x in many if room[x.number].any() and x.variant.hinged == WHOLE]
+        raised = [r for x in low for r in _raised(problem, own, around, x, room, met)]
         lanes[patch] = (*many, *raised)
     _raise_partners(problem, own, around, lanes, room, met)
     owners = {n: tuple(sorted({_owner(around, i) for i in found})) for n, found in met.items()}
-    return Prospects(lanes, room, owners, met)
+    panels = {x.number: around.panels[x.number] for x in every if x.number in around.panels}
+    return Prospects(lanes, room, owners, met, panels)
 
 
 def blocked_pieces(problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane]) -> Room:
@@ -90,10 +96,11 @@ def _look_at(
 ) -> None:
     """Finds out which pieces of the lanes have no room, and what they meet."""
     fresh = [x for x in many if x.number not in around.met]
-    found, hit = _held_against(problem, own, around, fresh)
+    found, hit = _held_against(problem, own, around, fresh, panels=around.panels)
     for x in fresh:
         if x.is_out or (problem.options.stay_in_box and leaves_the_box(problem, own, around, x)):
             found[x.number] = np.ones_like(found[x.number])
+            around.panels.pop(x.number, None)
             hit[x.number].add(-1)
         around.met[x.number] = found[x.number], hit[x.number]
     for x in many:
@@ -101,27 +108,33 @@ def _look_at(
 
 
 def _held_against(
-    problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane], passed: Bools | None = None
-) -> tuple[Room, dict[int, set[int]]]:
-    """Which pieces of the lanes meet what is around them, and which of its boxes; those `passed` (boxes,) left out."""
+    problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane], passed: Bools | None = None,
+    panels: Room | None = None,
+) -> tuple[Room, dict[int, set[int]]]:  # fmt: skip
+    """Which pieces of the lanes meet what is around them, and which of its boxes; those `passed` (boxes,) left out.
+
+    Of the lanes that meet something, those of which panels do are added to `panels`.
+    """
     steps = problem.options.shrink_steps
     room: Room = {x.number: np.zeros(steps, dtype=bool) for x in many}
     met: dict[int, set[int]] = {x.number: set() for x in many}
     close = _close(problem, around, many)
     if not close or not len(around.boxes):
         return room, met
-    cuts = cuts_of(own)
+    cuts = np.repeat(cuts_of(own), 2, axis=0)
     for group in _alike(own, close):
         for section in range(own.nominal.sections):
-            a = swept(problem, own, group, section)
+            a = parted(own, swept(problem, own, group, section))
             if a is None:
                 continue
             b = _carried(own, around, group[0], section)
             pieces, lanes, boxes = blocked(a, cuts, b, lambda: _never_met(problem, own, around, passed))
-            for number, box in zip(lanes.tolist(), boxes.tolist(), strict=True):
+            for number, box in zip((lanes // 2).tolist(), boxes.tolist(), strict=True):
                 met[number].add(box)
             for x in group:
-                room[x.number] |= pieces[x.number]
+                room[x.number] |= pieces[2 * x.number] | pieces[2 * x.number + 1]
+                if panels is not None and room[x.number].any():
+                    panels[x.number] = panels.get(x.number, False) | pieces[2 * x.number]
     return room, met
 
 
@@ -165,7 +178,7 @@ def _close(problem: Problem, around: Surroundings, many: list[Lane]) -> list[Lan
 
 
 def _never_met(problem: Problem, own: Repertoire, around: Surroundings, passed: Bools | None) -> Bools:
-    plates = _own_plates(problem, own.lanes, around)
+    plates = np.repeat(_own_plates(problem, own.lanes, around), 2, axis=0)
     return plates if passed is None else plates | passed
 
 

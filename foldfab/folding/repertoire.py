@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -32,6 +32,8 @@ TOUCH = 1e-3
 """Parts exactly the gap apart do not meet: the grid that sizes stand on, mm."""
 TALL = 1e6
 """Half the height of a folding region, mm: what lies above or below it counts."""
+BARE = 0.1
+"""How awkward hinges without knuckles are: of equal solutions the one with whole hinges is taken."""
 _AWKWARD_DIGITS = 4
 """Of awkwardness: what differs by the grid of places alone is equally awkward."""
 
@@ -57,6 +59,10 @@ class Repertoire:
     """By patch, the variants that were not needed yet, cheapest first; all of them cost more than those in `plain`."""
     pieces: dict[tuple[int, int], Bools] = field(default_factory=dict)
     """By two lanes of different patches, the first one smaller, which of their pieces meet (N_s, N_s)."""
+    parts: dict[tuple[int, int], Bools] = field(default_factory=dict)
+    """The same told apart: a lane's panels have twice its number, and its knuckles and feet one more."""
+    interrupted: set[int] = field(default_factory=set)
+    """Lanes whose hinges were interrupted wherever they may be."""
     plain_of: dict[int, int] = field(default_factory=dict)
     """By lane on plinths, the same without."""
     compared: set[int] = field(default_factory=set)
@@ -109,6 +115,24 @@ def lane(problem: Problem, own: Repertoire, patch: str, variant: Variant) -> Lan
     return lanes(problem, own, [(patch, variant)])[0]
 
 
+def interrupt(problem: Problem, own: Repertoire, x: Lane) -> None:
+    """Adds the lanes that do the same with the least stretch of knuckles in each place, in the lane's own N_s-ths.
+
+    Fewer knuckles never meet more, and cost nothing: these do for all ways to interrupt its hinges.
+    """
+    own.interrupted.add(x.number)
+    steps, start = problem.options.shrink_steps, 0
+    for end in range(1, steps + 1):
+        for first in range(end - 1, start - 1, -1):
+            variant = replace(x.variant, hinged=(first / steps, end / steps))
+            is_allowed = (x.patch, variant) not in problem.banned
+            found = lane(problem, own, x.patch, variant) if is_allowed and (first, end) != (0, steps) else None
+            if found is not None:
+                own.plain[x.patch] += (found,)
+                start = first + 1
+                break
+
+
 def swept(problem: Problem, own: Repertoire, many: Iterable[Lane], section: int) -> Batch | None:
     """The lanes that fold in a section, half the gap wider on every side, or None where there are none."""
     parts = [(own.movers[x.number][section], x.number) for x in many if section in x.active]
@@ -147,7 +171,8 @@ def regions(problem: Problem, own: Repertoire, many: Iterable[Lane]) -> Batch:
 
 
 def awkwardness(problem: Problem, many: Sequence[Lane], offset: Array) -> Array:
-    """(n,) how far lanes carry things out of the open furniture and how high their plinths are, relative to its size.
+    """(n,) how far lanes carry things out of the open furniture and how high their plinths are, relative to its size;
+    and a little for hinges that are interrupted.
 
     `offset` (3,) is how far the unit has been carried since the open posture.
     """
@@ -155,7 +180,8 @@ def awkwardness(problem: Problem, many: Sequence[Lane], offset: Array) -> Array:
     low, high = np.array([x.low for x in many]).reshape(-1, 3), np.array([x.high for x in many]).reshape(-1, 3)
     out = np.maximum(least - low - offset, 0) + np.maximum(high + offset - most, 0)
     pads = np.array([sum(x.variant.pads) for x in many])
-    found: Array = (out.sum(1) + 2 * pads) / math.dist(least, most)
+    bare = np.array([1 - x.variant.hinged[1] + x.variant.hinged[0] for x in many])
+    found: Array = (out.sum(1) + 2 * pads) / math.dist(least, most) + BARE * bare
     return np.round(found, _AWKWARD_DIGITS)
 
 

@@ -11,6 +11,7 @@ from foldfab.errors import FoldingError, LossError
 from foldfab.folding import anatomy, basic
 from foldfab.folding.demands import require_allowed, require_choices, require_variants
 from foldfab.folding.improve import improved, weight
+from foldfab.folding.knuckles import given_back
 from foldfab.folding.model import FoldSolution, Modification, Step, Thickness
 from foldfab.folding.optimum import NO_MORE, lower_bound, optimal
 from foldfab.folding.options import DELETION
@@ -149,6 +150,8 @@ def _refused(ordered: Ordered) -> str:
 
 def solution(problem: Problem, least: float, ordered: Ordered) -> FoldSolution:
     """The solution that an order of folds makes, no order counting less than `least` in the search."""
+    folds, interrupted = given_back(problem, open_scene(problem), ordered.folds)
+    ordered = replace(ordered, folds=folds)
     chains = tuple(sorted((c for f in ordered.folds for c in f.chains), key=lambda c: c.patch))
     changed = [_modification(problem, fold, patch) for fold in ordered.folds for patch in fold.unit.patches]
     changed.sort(key=lambda m: m.patch)
@@ -157,9 +160,8 @@ def solution(problem: Problem, least: float, ordered: Ordered) -> FoldSolution:
     spent = weight(ordered) - least
     bound = cost if spent < NO_MORE else max(cost - spent, 0.0)
     steps = _steps(problem, ordered.folds)
-    return FoldSolution(
-        problem.scaffold, problem.thickness, chains, tuple(changed), steps, cost, bound, _notes(problem, ordered)
-    )
+    notes = (*_notes(problem, ordered), *interrupted)
+    return FoldSolution(problem.scaffold, problem.thickness, chains, tuple(changed), steps, cost, bound, notes)
 
 
 def _steps(problem: Problem, folds: tuple[UnitFold, ...]) -> tuple[Step, ...]:

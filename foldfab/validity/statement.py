@@ -89,6 +89,7 @@ def _of_chain(solution: FoldSolution, chain: Chain, change: Modification, patch:
     if not is_t and count % 2 != (chain.mechanism == "in-place"):
         yield 0.0, f"is {chain.mechanism} with {count} hinges between two bases"
     yield from _of_window(chain, change, patch, solution.thickness)
+    yield from _of_breaks(chain, solution.thickness.of(chain.panel).hinge_width)
     yield from _of_place(solution, chain, patch)
     yield from _of_intervals(chain, is_t=is_t)
 
@@ -101,6 +102,19 @@ def _of_window(chain: Chain, change: Modification, patch: Patch, thickness: Thic
     is_widened = change.window == (0, 1) and width <= thickness.of(chain.panel).hinge_width + EXACT
     if not (0 <= change.window[0] < change.window[1] <= 1) or width < EXACT or (over > EXACT and not is_widened):
         yield float(over), f"reaches {max(over, 0.0):.2f} mm out of its window"
+
+
+def _of_breaks(chain: Chain, least: float) -> Iterator[tuple[float, str]]:
+    """Breaks follow one another, and leave each hinge a stretch that holds it."""
+    ends = [end for mark in chain.breaks for end in mark]
+    if sorted(ends) != ends:
+        yield 0.0, "has breaks in its hinges that do not ascend"
+        return
+    for name, (low, high) in zip(chain.bodies[1:], chain.hinge_spans.tolist(), strict=False):
+        free = [low, *(min(max(end, low), high) for end in ends), high]
+        widest = max(b - a for a, b in zip(free[::2], free[1::2], strict=True))
+        if chain.breaks and widest < least - EXACT:
+            yield least - widest, f"has no more than {widest:.2f} mm of the hinge at {name}, too little to hold it"
 
 
 def _of_place(solution: FoldSolution, chain: Chain, patch: Patch) -> Iterator[tuple[float, str]]:

@@ -103,17 +103,27 @@ def _plate(solution: FoldSolution, base: BasePatch) -> Boxes:
         points = axes_of(chain.root, chain, chain.lengths, chain.offsets, chain.lean)
         thick = thickness.of(chain.panel)
         if chain.anchor == base.name:
-            made += _mount(chain, thick, points[0], chain.rise, chain.pads[0], chain.hinge_spans[0])
+            made += _mount(chain, thick, points[0], chain.rise, chain.pads[0], _knuckled(chain, 0))
         if chain.far == base.name:
-            made += _mount(chain, thick, points[-1], -chain.rise, chain.pads[1], chain.hinge_spans[-1])
+            made += _mount(chain, thick, points[-1], -chain.rise, chain.pads[1], _knuckled(chain, -1))
     return stacked(made)
 
 
-def _mount(chain: Chain, thick: Thickness, axis: Array, out: Array, pad: float, hinge: Array) -> list[Boxes]:
+def _mount(chain: Chain, thick: Thickness, axis: Array, out: Array, pad: float, hinge: list[Array]) -> list[Boxes]:
     """The foot of a base hinge, from the face or the pocket's floor to the far side of its knuckles, and its plinth."""
-    foot = [_upright(chain, thick, axis, out, -thick.axis_height, 0.0, hinge), *_knuckle(chain, thick, axis, hinge)]
+    foot = [_upright(chain, thick, axis, out, -thick.axis_height, 0.0, span) for span in hinge]
+    foot += [half for span in hinge for half in _knuckle(chain, thick, axis, span)]
     low = -thick.axis_height - pad
     return [*foot, _upright(chain, thick, axis, out, low, -thick.axis_height, chain.span)] if pad > 0 else foot
+
+
+def _knuckled(chain: Chain, hinge: int) -> list[Array]:
+    """Where a hinge has knuckles (2,): all along it, but for what its breaks take."""
+    left = [chain.hinge_spans[hinge]]
+    for low, high in chain.breaks:
+        cut = [np.array(part) for a, b in left for part in ((a, min(b, low)), (max(a, high), b))]
+        left = [part for part in cut if part[1] > part[0]]
+    return left
 
 
 def _upright(chain: Chain, thick: Thickness, axis: Array, out: Array, low: float, high: float, span: Array) -> Boxes:
@@ -145,6 +155,7 @@ def _panels(chain: Chain, thick: Thickness, points: Array) -> list[Body]:
         middle = points[i] - chain.offsets[i] * normal + up * (low + high) / 2 + chain.along * chain.span.mean()
         half = np.array([thick.panel / 2, float(np.ptp(chain.span)) / 2, (high - low) / 2])
         slab = Boxes(middle[None], np.stack([normal, chain.along, up])[None], half[None])
-        knuckle = _knuckle(chain, thick, points[i + 1], chain.hinge_spans[i + 1]) if i < last else []
+        hinge = _knuckled(chain, i + 1) if i < last else []
+        knuckle = [half for span in hinge for half in _knuckle(chain, thick, points[i + 1], span)]
         made.append(Body(name, stacked([slab, *knuckle]), normal))
     return made

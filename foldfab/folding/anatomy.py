@@ -30,7 +30,7 @@ _MIRRORED_AXES = np.array([[1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [-1.0, 1.0, 1.0]])
 
 
 Spans = tuple[tuple[float, float], ...]
-"""Extents along the hinge direction of the panels, then of the knuckles of each inserted hinge, stretch by stretch, mm."""
+"""Extents along the hinge direction of the panels, then of each inserted hinge, stretch by stretch, mm."""
 
 
 class Foot(NamedTuple):

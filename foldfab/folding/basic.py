@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -135,6 +135,24 @@ def holds(chain: Chain, thickness: Thickness) -> bool:
     return all(
         any(high - low >= least for low, high in chain.stretches(hinge)) for hinge in range(len(chain.bodies) - 1)
     )
+
+
+def stretches(
+    site: Site, chain: Chain, variant: Variant, steps: int, thickness: Thickness
+) -> tuple[tuple[int, int], ...]:
+    """The least stretch of knuckles that holds a whole chain, in each place, in N_s-ths of the width.
+
+    Fewer knuckles never meet more, and cost nothing: these do for all ways to interrupt its hinges.
+    """
+    found, start = [], 0
+    for end in range(1, steps + 1):
+        for first in range(end - 1, start - 1, -1):
+            breaks = _breaks(site, replace(variant, hinged=(first / steps, end / steps)), thickness)
+            if breaks and holds(replace(chain, breaks=breaks), thickness):
+                found.append((first, end))
+                start = first + 1
+                break
+    return tuple(found)
 
 
 def _breaks(site: Site, variant: Variant, thickness: Thickness) -> tuple[tuple[float, float], ...]:

@@ -30,6 +30,8 @@ LIMIT = 1_500
 """Branches after which CP-SAT takes over."""
 SHORT = 100
 """The same where it had to before: as many as give it a choice to start from."""
+FEW_BRANCHES = 600
+"""The same where it is only asked whether there is something cheaper, and nobody takes over."""
 FEW = 8
 """Groups beyond which elimination is tried first."""
 WIDEST = 100
@@ -79,6 +81,34 @@ def cheapest(
         if best is None:
             return None
         taken.update(best)
+    return tuple(taken[g] for g in range(len(costs)))
+
+
+def cheaper(
+    costs: list[Array], conflicts: Mapping[tuple[int, int], Bools], forbidden: frozenset[Combination], than: float
+) -> tuple[int, ...] | None:
+    """A conflict-free choice that costs less than something, the cheapest one as far as a few branches tell.
+
+    None where there is none, or none is found in `FEW_BRANCHES` for each set of groups with conflicts between them.
+    """
+    least = [float(c.min()) for c in costs]
+    if sum(least) >= than:
+        return None
+    table = _by_group(len(costs), conflicts)
+    held = _held(costs, forbidden)
+    alive = [_undominated(costs[g], [*table[g].values(), *held[g]]) for g in range(len(costs))]
+    taken: dict[int, int] = {}
+    # What may be spent beyond the cheapest options of all groups.
+    spare = than - sum(least)
+    for groups in _islands(alive, table, forbidden):
+        own, part = {g: alive[g] for g in groups}, sum(least[g] for g in groups)
+        within = [c for c in forbidden if {g for g, _ in c} <= set(groups)]
+        search = _Search(own, costs, table, within, FEW_BRANCHES, part + spare)
+        best = search.found()
+        if best is None:
+            return None
+        taken.update(best)
+        spare -= search.bound - part
     return tuple(taken[g] for g in range(len(costs)))
 
 
@@ -187,8 +217,9 @@ class _Search:
     """
 
     def __init__(
-        self, alive: Mapping[int, Bools], costs: list[Array], table: Table, forbidden: list[Combination], limit: int
-    ) -> None:
+        self, alive: Mapping[int, Bools], costs: list[Array], table: Table, forbidden: list[Combination], limit: int,
+        than: float = np.inf,
+    ) -> None:  # fmt: skip
         self.options = {g: _cheapest_first(left, costs[g]) for g, left in alive.items()}
         """By group, its options, cheapest first; all else here goes by their places in it."""
         self.prices = {g: costs[g][own].tolist() for g, own in self.options.items()}
@@ -207,7 +238,7 @@ class _Search:
                     self.forbidden.setdefault((g, option), []).append(together)
         self.left = limit
         self.best: dict[int, int] | None = None
-        self.bound = np.inf
+        self.bound = than
 
     def found(self) -> dict[int, int] | None:
         """The cheapest option of each group, as far as the limit goes."""

@@ -19,7 +19,7 @@ from foldfab.folding.balance import can_agree
 from foldfab.folding.basic import WHOLE
 from foldfab.folding.lanes import Lane
 from foldfab.folding.problem import Problem
-from foldfab.folding.repertoire import Repertoire, cuts_of, lane, regions, resting, swept
+from foldfab.folding.repertoire import Repertoire, cuts_of, lane, regions, resting, stretches, swept
 from foldfab.folding.space import Batch, conflicts, meetings
 from foldfab.geometry.arrays import Array, Bools, Indices
 
@@ -40,20 +40,20 @@ def compare(problem: Problem, own: Repertoire, many: Iterable[Lane]) -> None:
     known = [own.lanes[n] for n in sorted(own.compared)]
     same, once = _never_compared(own, fresh)
     own.compared.update(x.number for x in fresh)
-    cuts, same, once = _told_apart(cuts_of(own), same, once)
+    cuts, same, once = np.repeat(cuts_of(own), 2, axis=0), _told_apart(same), _told_apart(once)
     if problem.options.collisions == "regions":
         _learn(own, _regions_met(problem, own, fresh, known, cuts, same, once))
         known, fresh = [], []
     for section in range(own.nominal.sections):
-        moving = parted(own, swept(problem, own, fresh, section))
-        others = parted(own, swept(problem, own, known, section))
+        moving = swept(problem, own, fresh, section)
+        others = swept(problem, own, known, section)
         pairs = [(moving, moving, once), (moving, others, same)]
         if own.nominal.sections > 1:
-            pairs += [(moving, parted(own, _beside(problem, own, [*fresh, *known], fresh, section)), same)]
-            pairs += [(others, parted(own, _beside(problem, own, fresh, known, section)), same)]
+            pairs += [(moving, _beside(problem, own, [*fresh, *known], fresh, section), same)]
+            pairs += [(others, _beside(problem, own, fresh, known, section), same)]
         for a, b, apart in pairs:
             if a is not None and b is not None:
-                _learn(own, conflicts(a, b, cuts, apart))
+                _learn(own, conflicts(_parted(own, a), _parted(own, b), cuts, apart))
     for number, y in plain.items():
         own.plain_of[number] = y.number if y is not None else number
 
@@ -64,25 +64,23 @@ def _regions_met(
     """The paper's own test: folding time intervals overlap, and so do the regions that patches cover when folded."""
     start, stop = (np.repeat([getattr(x.active, end) for x in own.lanes], 2) for end in ("start", "stop"))
     apart = (start[:, None] >= stop) | (start >= stop[:, None])
-    new = parted(own, regions(problem, own, fresh))
+    new = _parted(own, regions(problem, own, fresh))
     met = conflicts(new, new, cuts, once | apart)
-    old = parted(own, regions(problem, own, known)) if known else None
-    return met | conflicts(new, old, cuts, same | apart) if old is not None else met
+    return met | conflicts(new, _parted(own, regions(problem, own, known)), cuts, same | apart) if known else met
 
 
-def parted(own: Repertoire, whole: Batch | None) -> Batch | None:
+def _parted(own: Repertoire, whole: Batch) -> Batch:
     """A batch of lanes with each told apart in two: panels have twice its number, knuckles and feet one more."""
-    if whole is None:
-        return None
     begins = np.append(True, np.diff(whole.lane) != 0)
     place = np.arange(len(whole)) - np.maximum.accumulate(np.where(begins, np.arange(len(whole)), 0))
     panels = np.array([len(x.chain.lengths) for x in own.lanes])
     return replace(whole, lane=2 * whole.lane + (place >= panels[whole.lane]))
 
 
-def _told_apart(cuts: Array, *never: Bools) -> tuple[Array, ...]:
-    """Cutting points, and which lanes are never compared, for lanes that are told apart."""
-    return np.repeat(cuts, 2, axis=0), *(np.repeat(np.repeat(many, 2, axis=0), 2, axis=1) for many in never)
+def _told_apart(never: Bools) -> Bools:
+    """Which lanes are never compared, for lanes that are told apart."""
+    found: Bools = np.repeat(np.repeat(never, 2, axis=0), 2, axis=1)
+    return found
 
 
 @cache
@@ -100,8 +98,8 @@ def table(
 ) -> Bools | None:  # fmt: skip
     """Which options of one patch conflict with which of another: (n · w + 1, m · w + 1), lane by lane, deletion last.
 
-    `inside` (w, N_s) says which pieces each window holds. None where nothing conflicts. Where `is_bare`, as if hinges
-    that may still be interrupted were not there.
+    `inside` (w, N_s) says which pieces each window holds. None where nothing conflicts. Where `is_bare`, hinges that
+    may still be interrupted have such knuckles as suit the two patches.
     """
     key: object = (tuple(x.number for x in first), tuple(x.number for x in second), in_modes)
     key = (key, *(tuple(may_be_interrupted(own, x) for x in many) for many in (first, second))) if is_bare else key
@@ -248,11 +246,17 @@ def _table(
         for j, b in enumerate(second):
             for p in {a.number, own.plain_of.get(a.number, a.number)}:
                 for q in {b.number, own.plain_of.get(b.number, b.number)}:
-                    pieces = _without_hinges(own, p, q) if is_bare else own.pieces.get((min(p, q), max(p, q)))
+                    pieces = _panels_met(own, p, q) if is_bare else own.pieces.get((min(p, q), max(p, q)))
                     if pieces is not None:
                         met[i, :, j] |= pieces if p < q else pieces.T
             never[i, j] = not (in_modes or drag_alike(a, b)) or not snap_alike(problem, own, a, b)
-    return _of_windows(met, never, inside, count)
+    made = _of_windows(met, never, inside, count)
+    for i, a in enumerate(first) if is_bare else ():
+        for j, b in enumerate(second):
+            if (min(a.number, b.number), max(a.number, b.number)) in own.pieces:
+                block = made[i * count : (i + 1) * count, j * count : (j + 1) * count]
+                block |= _without_room(problem, own, a, b, inside)
+    return made
 
 
 def may_be_interrupted(own: Repertoire, x: Lane) -> bool:
@@ -260,7 +264,7 @@ def may_be_interrupted(own: Repertoire, x: Lane) -> bool:
     return x.variant.hinged == WHOLE and x.number not in own.interrupted
 
 
-def _without_hinges(own: Repertoire, p: int, q: int) -> Bools | None:
+def _panels_met(own: Repertoire, p: int, q: int) -> Bools | None:
     """Which pieces of two lanes meet without what may still be interrupted; those of the lower number first."""
     found: Bools | None = None
     for i in range(1 if may_be_interrupted(own, own.lanes[p]) else 2):
@@ -269,6 +273,48 @@ def _without_hinges(own: Repertoire, p: int, q: int) -> Bools | None:
             if key in own.parts:
                 found = own.parts[key] if found is None else found | own.parts[key]
     return found
+
+
+def _without_room(problem: Problem, own: Repertoire, x: Lane, y: Lane, inside: Array) -> Bools:
+    """(w, w) by windows of two lanes, whether hinges that may be interrupted have no room beside the other lane."""
+    loose = [may_be_interrupted(own, lane) for lane in (x, y)]
+    hinges: list[tuple[int, ...]] = [(1,) if is_loose else () for is_loose in loose]
+    firm: list[tuple[int, ...]] = [(0,) if is_loose else (0, 1) for is_loose in loose]
+    beside, below = _met(own, x, hinges[0], y, firm[1]), _met(own, x, firm[0], y, hinges[1])
+    between = _met(own, x, hinges[0], y, hinges[1])
+    if not (beside.any() or below.any() or between.any()):
+        return np.zeros((len(inside), len(inside)), dtype=bool)
+    (kept, may), (others, might) = (_kept(problem, own, lane, inside) for lane in (x, y))
+    # By windows and the stretch of either lane, whether it has room beside what stays of the other one.
+    first = may[:, None] & (kept @ beside @ inside.T == 0).T
+    second = might & (inside @ below @ others.T == 0)[:, None]
+    free = (kept @ between @ others.T == 0).astype(np.float32)
+    found: Bools = ~((first.astype(np.float32) @ free > 0) & second).any(2)
+    return found
+
+
+def _met(own: Repertoire, x: Lane, parts: tuple[int, ...], y: Lane, others: tuple[int, ...]) -> Array:
+    """(N_s, N_s) more than 0 where pieces of some parts of two lanes meet, 0 for panels and 1 for knuckles and feet."""
+    steps = len(x.cuts) - 1
+    found: Array = np.zeros((steps, steps), dtype=np.float32)
+    for i, j in itertools.product(parts, others):
+        one, two = 2 * x.number + i, 2 * y.number + j
+        pieces = own.parts.get((min(one, two), max(one, two)))
+        if pieces is not None:
+            found += pieces if one < two else pieces.T
+    return found
+
+
+def _kept(problem: Problem, own: Repertoire, x: Lane, inside: Array) -> tuple[Array, Bools]:
+    """(s, N_s) the pieces with knuckles, in all windows and then in all stretches of a lane, and which of these each
+    window (w, s) may have: all its own, or a stretch within.
+    """
+    steps = inside.shape[1]
+    kept = np.zeros((len(marks := stretches(problem, own, x)), steps), dtype=np.float32)
+    for row, (a, b) in zip(kept, marks, strict=True):
+        row[a:b] = 1
+    within = inside @ kept.T == kept.sum(1)
+    return np.concatenate([inside, kept]), np.concatenate([np.eye(len(inside), dtype=bool), within], axis=1)
 
 
 def _of_windows(met: Bools, never: Bools, inside: Array, count: int) -> Bools:

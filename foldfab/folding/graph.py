@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from foldfab.folding.basic import Option
-from foldfab.folding.choose import Combination, cheapest
+from foldfab.folding.choose import Combination, cheaper, cheapest
 from foldfab.folding.conflict import compare, modes, neighbours, table, windows_table
 from foldfab.folding.options import options_of
 from foldfab.folding.problem import Problem
@@ -39,7 +39,7 @@ class Graph:
         *,
         is_bare: bool = False,
     ) -> None:
-        """Where `is_bare`, as if hinges that may still be interrupted were not there."""
+        """Where `is_bare`, hinges that may still be interrupted only conflict where no stretch of knuckles has room."""
         self.patches, self.work = own.unit.patches, problem.work
         options = options_of(problem, found, offset)
         self.options = [options[p] for p in self.patches]
@@ -96,6 +96,11 @@ class Graph:
                 if picked is not None and (best is None or self.weight(picked) < self.weight(best)):
                     best = picked
         return best
+
+    def cheaper(self, than: float) -> tuple[int, ...] | None:
+        """A choice that counts less, where a little work finds one; not for graphs with several ways to drag bases."""
+        self.work.charge(SEARCHING * len(self.costs))
+        return cheaper(self.costs, self.tables, frozenset(self.forbidden), than)
 
     def _cheapest(self, costs: list[Array]) -> tuple[int, ...] | None:
         self.work.charge(SEARCHING * len(costs))

@@ -1,104 +1,122 @@
-"""Hinges that are interrupted where something else folds through: which of them would make a choice cheaper.
+"""Hinges that are interrupted where something else folds through: which of them make a unit's choice cheaper.
 
 Where only the knuckles or the feet of a patch are in the way, and its panels are not, its hinges may have knuckles
-elsewhere. What that could gain is bounded by the conflict graph in which hinges that may still be interrupted are not
-there at all. Where its cheapest choice counts less, the lanes that it takes in vain are made again, each with the least
-stretch of knuckles that holds, in every place; until it takes none. That is exact: what is left out meets nothing less.
+elsewhere. What that could gain is asked of the conflict graph in which such hinges have, beside each other patch, the
+knuckles that suit. Where a choice of it counts less, the lanes whose hinges are in its way are made again, with a
+stretch of knuckles that holds and that suits all; until a choice holds, or none is cheaper. Then they are made in every
+place.
+
+This only finds options, and what is not found with little work is left: it bounds nothing.
 """
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
-from dataclasses import replace
 
 import numpy as np
 
-from foldfab.folding.basic import Option
+from foldfab.folding.basic import WHOLE
+from foldfab.folding.choose import cheaper
 from foldfab.folding.conflict import may_be_interrupted
 from foldfab.folding.graph import Graph
 from foldfab.folding.lanes import Lane
 from foldfab.folding.problem import Problem
-from foldfab.folding.prospects import Prospects
-from foldfab.folding.repertoire import Repertoire
-from foldfab.geometry.arrays import Array
+from foldfab.folding.prospects import unhindered
+from foldfab.folding.repertoire import Place, Repertoire, Stretch, interrupt, stretches
 
-BETTER = 1e-5
-"""By how much a choice must be cheaper: more than preferences between options of equal cost add up to."""
+WORTH = 2e-3
+"""By how much a choice must be cheaper to be worth the lanes that it takes."""
+ROUNDS = 4
+"""How often lanes are made for a unit before it is left as it is."""
 
 
-def hindered(
-    problem: Problem, own: Repertoire, found: Prospects, graph: Graph, picked: tuple[int, ...] | None, offset: Array,
-    chosen: Mapping[str, Option] | None = None,
-) -> list[Lane]:  # fmt: skip
-    """The lanes whose hinges keep a unit from a choice cheaper than the one that was picked from its graph."""
+def interrupted(problem: Problem, own: Repertoire, graph: Graph, picked: tuple[int, ...] | None) -> bool:
+    """Adds the lanes by which a unit has a cheaper choice than was picked from its graph; whether there are any."""
     weight = graph.weight(picked) if picked is not None else np.inf
-    every = [x for many in found.lanes.values() for x in many]
-    if weight <= _least(problem, found) + BETTER or not any(_is_hindered(own, found, x) for x in every):
-        return []
-    room = {
-        x.number: found.panels.get(x.number, found.blocked[x.number])
-        if may_be_interrupted(own, x)
-        else found.blocked[x.number]
-        for x in every
-    }
-    bare = Graph(problem, own, replace(found, blocked=room), offset, graph.learned, chosen, is_bare=True)
-    best = bare.cheapest()
-    if best is None or bare.weight(best) >= weight - BETTER:
-        return []
-    places = [o.place(i) for o, i in zip(graph.options, best, strict=True)]
-    in_vain = {g for g, (i, cost) in enumerate(zip(best, graph.costs, strict=True)) if not np.isfinite(cost[i])}
-    for pair, table in graph.tables.items():
-        in_vain |= set(pair) if table[best[pair[0]], best[pair[1]]] else set()
-    lanes = [place[0] for g, place in enumerate(places) if g in in_vain and place is not None]
-    return [x for x in lanes if may_be_interrupted(own, x)]
-
-
-def touched(own: Repertoire) -> list[Lane]:
-    """The lanes whose hinges meet something of their own unit that their panels do not meet."""
-    found = set[int]()
-    for (a, b), pieces in own.pieces.items():
-        for one, other, rows in ((a, b, pieces), (b, a, pieces.T)):
-            if one not in found and may_be_interrupted(own, own.lanes[one]) and _by_hinges(own, one, other, rows):
-                found.add(one)
-    return [own.lanes[n] for n in sorted(found)]
-
-
-def hampered(own: Repertoire, found: Prospects) -> list[Lane]:
-    """The lanes whose hinges meet something around the unit that their panels do not meet."""
-    every = (x for many in found.lanes.values() for x in many if may_be_interrupted(own, x))
-    return [x for x in every if _is_hampered(found, x)]
-
-
-def _by_hinges(own: Repertoire, one: int, other: int, pieces: Array) -> bool:
-    """Whether a lane has pieces that meet another one by their hinges only; `pieces` (N_s, N_s) are all that meet."""
-    firm = np.zeros_like(pieces)
-    for i in range(2):
-        key = (2 * one, 2 * other + i) if one < other else (2 * other + i, 2 * one)
-        if key in own.parts:
-            firm |= own.parts[key] if one < other else own.parts[key].T
-    return bool((pieces & ~firm).any())
-
-
-def _is_hindered(own: Repertoire, found: Prospects, x: Lane) -> bool:
-    """Whether the hinges of a lane meet anything that its panels do not meet."""
-    if not may_be_interrupted(own, x):
+    if graph.modes or weight <= _least(problem, own) + WORTH:
         return False
-    return _is_hampered(found, x) or any(
-        _by_hinges(own, x.number, b if a == x.number else a, pieces if a == x.number else pieces.T)
-        for (a, b), pieces in own.pieces.items()
-        if x.number in (a, b)
-    )
+    before = dict(own.plain)
+    for _ in range(ROUNDS):
+        bare = Graph(problem, own, unhindered(problem, own), np.zeros(3), is_bare=True)
+        best = bare.cheaper(weight - WORTH)
+        if best is None:
+            break
+        places = {o.patch: o.place(i) for o, i in zip(bare.options, best, strict=True)}
+        chosen = {p: place for p, place in places.items() if place is not None}
+        if not _are_hindered(own, chosen):
+            _settle(problem, own, chosen, before)
+            return True
+        agreed = _agreeing(problem, own, chosen)
+        for patch, stretch in agreed.items():
+            interrupt(problem, own, chosen[patch][0], [stretch])
+        if not agreed:
+            break
+    own.plain.update(before)
+    own.interrupted.clear()
+    return False
 
 
-def _is_hampered(found: Prospects, x: Lane) -> bool:
-    panels = found.panels.get(x.number)
-    return panels is not None and bool((found.blocked[x.number] & ~panels).any())
+def _settle(
+    problem: Problem, own: Repertoire, chosen: Mapping[str, Place], before: Mapping[str, tuple[Lane, ...]]
+) -> None:
+    """Keeps the lanes of those patches only whose hinges a choice interrupts, but of these in every place."""
+    cut = {p for p, (x, _) in chosen.items() if x.variant.hinged != WHOLE}
+    own.plain.update({p: many for p, many in before.items() if p not in cut})
+    own.interrupted.intersection_update(x.number for x in own.lanes if x.patch in cut)
+    for number in sorted(own.interrupted):
+        interrupt(problem, own, own.lanes[number], stretches(problem, own, own.lanes[number]))
 
 
-def _least(problem: Problem, found: Prospects) -> float:
+def _are_hindered(own: Repertoire, chosen: Mapping[str, Place]) -> bool:
+    """Whether anything of a choice meets, knuckles and feet included."""
+    for (x, a), (y, b) in itertools.combinations(chosen.values(), 2):
+        one, two = sorted(((x.number, a), (y.number, b)))
+        pieces = own.pieces.get((one[0], two[0]))
+        if pieces is not None and pieces[slice(*one[1]), slice(*two[1])].any():
+            return True
+    return False
+
+
+def _agreeing(problem: Problem, own: Repertoire, chosen: Mapping[str, Place]) -> dict[str, Stretch]:
+    """By patch whose hinges must be interrupted in a choice in which no panels meet, where they keep their knuckles.
+
+    As few as possible; none where they cannot, as far as longer panels do not matter.
+    """
+    loose = [p for p, (x, _) in chosen.items() if may_be_interrupted(own, x)]
+    hinges = [2 * chosen[p][0].number + 1 for p in loose]
+    able = [_able(problem, own, chosen, set(loose), p) for p in loose]
+    if not all(able):
+        return {}
+    tables = {}
+    for g, h in itertools.combinations(range(len(loose)), 2):
+        if own.parts.get((min(hinges[g], hinges[h]), max(hinges[g], hinges[h]))) is not None:
+            tables[g, h] = np.array([[_meet(own, hinges[g], s, hinges[h], t) for t in able[h]] for s in able[g]])
+    costs = [np.array([float(s != chosen[p][1]) for s in own_able]) for p, own_able in zip(loose, able, strict=True)]
+    best = cheaper(costs, tables, frozenset(), np.inf) or ()
+    return {p: many[i] for p, many, cost, i in zip(loose, able, costs, best, strict=False) if cost[i]}
+
+
+def _able(problem: Problem, own: Repertoire, chosen: Mapping[str, Place], loose: set[str], patch: str) -> list[Stretch]:
+    """Where a patch may have knuckles beside all that stays: everywhere in its window, or in a stretch of it."""
+    x, window = chosen[patch]
+    stays = [(2 * y.number + j, w) for q, (y, w) in chosen.items() if q != patch for j in range(1 if q in loose else 2)]
+    within = [s for s in stretches(problem, own, x) if window[0] <= s[0] and s[1] <= window[1]]
+    return [s for s in (window, *within) if not any(_meet(own, 2 * x.number + 1, s, *part) for part in stays)]
+
+
+def _meet(own: Repertoire, one: int, first: Stretch, two: int, second: Stretch) -> bool:
+    """Whether two parts of lanes, told apart, meet within some pieces."""
+    table = own.parts.get((min(one, two), max(one, two)))
+    if table is None:
+        return False
+    return bool((table if one < two else table.T)[slice(*first), slice(*second)].any())
+
+
+def _least(problem: Problem, own: Repertoire) -> float:
     """What a choice counts at least: each patch as if nothing met anything."""
     least = 0.0
-    for patch, many in found.lanes.items():
+    for patch, many in own.plain.items():
         hinges = min((x.variant.hinges for x in many), default=problem.options.max_hinges)
         least += problem.sites[patch].importance * problem.options.alpha * hinges / problem.options.max_hinges
     return least

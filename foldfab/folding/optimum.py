@@ -19,10 +19,9 @@ import numpy as np
 from foldfab.folding import basic
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.group import Group, cut_of, posed
-from foldfab.folding.interruption import touched
 from foldfab.folding.ordering import Ordered, after, neighbouring
 from foldfab.folding.problem import Problem
-from foldfab.folding.repertoire import extend, interrupt
+from foldfab.folding.repertoire import extend
 from foldfab.folding.replay import played
 from foldfab.folding.scene import Scene
 from foldfab.folding.symmetry import Signature
@@ -68,7 +67,7 @@ def optimal(
         least = min(least, limit - rest_counts + sum(floor[n] for n in names))
         others = [folds[n] for n in order if n not in names] if is_whole else []
         group = _group(problem, scene, others, {n: floor[n] for n in names}, least)
-        found, group_bound = _best(group, problem.work.left / (len(left) - k))
+        found, group_bound = _solved(group, problem.work.left / (len(left) - k))
         bound += min(group_bound, least)
         if found is not None:
             rest = [n for n in order if n not in names] if is_whole else []
@@ -106,7 +105,7 @@ def other(
 ) -> tuple[Ordered | None, float]:  # fmt: skip
     """The best order with other modifications than those excluded that counts less than `most`, and its bound."""
     group = replace(_group(problem, scene, [], dict(floor), most), excluded=excluded)
-    folds, bound = _best(group, work)
+    folds, bound = _solved(group, work)
     return (Ordered(folds, ()) if folds is not None else None), bound
 
 
@@ -135,27 +134,6 @@ def _surcharge(problem: Problem, patch: str, first: basic.Variant | None, varian
         return 0.0
     more = basic.cost(variant.hinges, 1.0, problem.options) - basic.cost(first.hinges, 1.0, problem.options)
     return problem.sites[patch].importance * more
-
-
-def _best(group: Group, work: float) -> tuple[tuple[UnitFold, ...] | None, float]:
-    """The cheapest folds of the group as by `_solved`, first with those lanes that there are.
-
-    Then with all hinges interrupted that meet anything in their unit, where any do: before that there is no bound.
-    """
-    problem = group.problem
-    until = problem.work.spent + work
-    found, bound = _solved(group, work)
-    wider, is_wider = dict(group.lanes), False
-    for unit in group.units:
-        own = repertoire(problem, unit)
-        for x in touched(own):
-            interrupt(problem, own, x)
-            is_wider = True
-        wider |= {p: (*wider[p], *(x for x in own.plain[p] if x not in wider[p])) for p in unit.patches}
-    if not is_wider:
-        return found, bound
-    better, bound = _solved(replace(group, lanes=wider), until - problem.work.spent)
-    return better or found, bound
 
 
 def _solved(group: Group, work: float) -> tuple[tuple[UnitFold, ...] | None, float]:

@@ -9,12 +9,11 @@ figure 15(b). The choice decides by cost.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from foldfab.folding.basic import WHOLE
-from foldfab.folding.conflict import parted
 from foldfab.folding.lanes import Lane
 from foldfab.folding.outline import leaves_box
 from foldfab.folding.problem import Problem
@@ -44,8 +43,6 @@ class Prospects:
     """By lane, the owners of what it meets."""
     met: Mapping[int, set[int]]
     """By lane, the boxes around the unit that it meets; -1 for the bounds that it must keep to."""
-    panels: Room = field(default_factory=dict)
-    """By lane that has any, the pieces of which panels meet something; in the others that are blocked hinges do."""
 
 
 def prospects(problem: Problem, own: Repertoire, around: Surroundings, *, in_place: bool) -> Prospects:
@@ -62,8 +59,7 @@ def prospects(problem: Problem, own: Repertoire, around: Surroundings, *, in_pla
         lanes[patch] = (*many, *raised)
     _raise_partners(problem, own, around, lanes, room, met)
     owners = {n: tuple(sorted({_owner(around, i) for i in found})) for n, found in met.items()}
-    panels = {x.number: around.panels[x.number] for x in every if x.number in around.panels}
-    return Prospects(lanes, room, owners, met, panels)
+    return Prospects(lanes, room, owners, met)
 
 
 def blocked_pieces(problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane]) -> Room:
@@ -96,11 +92,10 @@ def _look_at(
 ) -> None:
     """Finds out which pieces of the lanes have no room, and what they meet."""
     fresh = [x for x in many if x.number not in around.met]
-    found, hit = _held_against(problem, own, around, fresh, panels=around.panels)
+    found, hit = _held_against(problem, own, around, fresh)
     for x in fresh:
         if x.is_out or (problem.options.stay_in_box and leaves_the_box(problem, own, around, x)):
             found[x.number] = np.ones_like(found[x.number])
-            around.panels.pop(x.number, None)
             hit[x.number].add(-1)
         around.met[x.number] = found[x.number], hit[x.number]
     for x in many:
@@ -108,33 +103,27 @@ def _look_at(
 
 
 def _held_against(
-    problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane], passed: Bools | None = None,
-    panels: Room | None = None,
-) -> tuple[Room, dict[int, set[int]]]:  # fmt: skip
-    """Which pieces of the lanes meet what is around them, and which of its boxes; those `passed` (boxes,) left out.
-
-    Of the lanes that meet something, those of which panels do are added to `panels`.
-    """
+    problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane], passed: Bools | None = None
+) -> tuple[Room, dict[int, set[int]]]:
+    """Which pieces of the lanes meet what is around them, and which of its boxes; those `passed` (boxes,) left out."""
     steps = problem.options.shrink_steps
     room: Room = {x.number: np.zeros(steps, dtype=bool) for x in many}
     met: dict[int, set[int]] = {x.number: set() for x in many}
     close = _close(problem, around, many)
     if not close or not len(around.boxes):
         return room, met
-    cuts = np.repeat(cuts_of(own), 2, axis=0)
+    cuts = cuts_of(own)
     for group in _alike(own, close):
         for section in range(own.nominal.sections):
-            a = parted(own, swept(problem, own, group, section))
+            a = swept(problem, own, group, section)
             if a is None:
                 continue
             b = _carried(own, around, group[0], section)
             pieces, lanes, boxes = blocked(a, cuts, b, lambda: _never_met(problem, own, around, passed))
-            for number, box in zip((lanes // 2).tolist(), boxes.tolist(), strict=True):
+            for number, box in zip(lanes.tolist(), boxes.tolist(), strict=True):
                 met[number].add(box)
             for x in group:
-                room[x.number] |= pieces[2 * x.number] | pieces[2 * x.number + 1]
-                if panels is not None and room[x.number].any():
-                    panels[x.number] = panels.get(x.number, False) | pieces[2 * x.number]
+                room[x.number] |= pieces[x.number]
     return room, met
 
 
@@ -178,7 +167,7 @@ def _close(problem: Problem, around: Surroundings, many: list[Lane]) -> list[Lan
 
 
 def _never_met(problem: Problem, own: Repertoire, around: Surroundings, passed: Bools | None) -> Bools:
-    plates = np.repeat(_own_plates(problem, own.lanes, around), 2, axis=0)
+    plates = _own_plates(problem, own.lanes, around)
     return plates if passed is None else plates | passed
 
 

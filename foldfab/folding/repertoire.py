@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from foldfab.folding import basic
 from foldfab.folding.anatomy import Ride, swept_boxes
 from foldfab.folding.basic import Variant
 from foldfab.folding.lanes import Lane, Movers, made, stopped, upright
@@ -40,6 +41,8 @@ _AWKWARD_DIGITS = 4
 
 Place = tuple[Lane, tuple[int, int]]
 """A lane and a window in N_s-ths."""
+Stretch = tuple[int, int]
+"""First and last cutting point of the part of a patch in which its hinges have knuckles."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,6 +66,8 @@ class Repertoire:
     """The same told apart: a lane's panels have twice its number, and its knuckles and feet one more."""
     interrupted: set[int] = field(default_factory=set)
     """Lanes whose hinges were interrupted wherever they may be."""
+    stretches: dict[int, tuple[Stretch, ...]] = field(default_factory=dict)
+    """By lane, where its hinges may be interrupted, as far as that was asked for."""
     plain_of: dict[int, int] = field(default_factory=dict)
     """By lane on plinths, the same without."""
     compared: set[int] = field(default_factory=set)
@@ -115,22 +120,21 @@ def lane(problem: Problem, own: Repertoire, patch: str, variant: Variant) -> Lan
     return lanes(problem, own, [(patch, variant)])[0]
 
 
-def interrupt(problem: Problem, own: Repertoire, x: Lane) -> None:
-    """Adds the lanes that do the same with the least stretch of knuckles in each place, in the lane's own N_s-ths.
-
-    Fewer knuckles never meet more, and cost nothing: these do for all ways to interrupt its hinges.
-    """
+def interrupt(problem: Problem, own: Repertoire, x: Lane, stretches: Iterable[Stretch]) -> None:
+    """Adds the lanes that do the same with knuckles in one stretch only, in N_s-ths of the width."""
     own.interrupted.add(x.number)
-    steps, start = problem.options.shrink_steps, 0
-    for end in range(1, steps + 1):
-        for first in range(end - 1, start - 1, -1):
-            variant = replace(x.variant, hinged=(first / steps, end / steps))
-            is_allowed = (x.patch, variant) not in problem.banned
-            found = lane(problem, own, x.patch, variant) if is_allowed and (first, end) != (0, steps) else None
-            if found is not None:
-                own.plain[x.patch] += (found,)
-                start = first + 1
-                break
+    steps = problem.options.shrink_steps
+    variants = [replace(x.variant, hinged=(first / steps, end / steps)) for first, end in stretches]
+    wanted = [(x.patch, v) for v in variants if (x.patch, v) not in problem.banned]
+    own.plain[x.patch] += tuple(y for y in lanes(problem, own, wanted) if y is not None and y not in own.plain[x.patch])
+
+
+def stretches(problem: Problem, own: Repertoire, x: Lane) -> tuple[Stretch, ...]:
+    """The least stretch of knuckles that holds a lane, in each place."""
+    if x.number not in own.stretches:
+        steps, thickness = problem.options.shrink_steps, problem.thickness
+        own.stretches[x.number] = basic.stretches(problem.sites[x.patch], x.chain, x.variant, steps, thickness)
+    return own.stretches[x.number]
 
 
 def swept(problem: Problem, own: Repertoire, many: Iterable[Lane], section: int) -> Batch | None:

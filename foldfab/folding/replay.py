@@ -8,7 +8,6 @@ from dataclasses import replace
 from foldfab.folding import basic
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.group import Group, learn
-from foldfab.folding.interruption import hampered
 from foldfab.folding.lessons import lessons_of, lessons_of_others, must_wait, out_of_the_box
 from foldfab.folding.master import Proposal
 from foldfab.folding.model import Chain
@@ -18,7 +17,6 @@ from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import prospects
 from foldfab.folding.realise import Clash, realised
 from foldfab.folding.reasons import reasons_of
-from foldfab.folding.repertoire import interrupt
 from foldfab.folding.scene import Scene, shown
 from foldfab.folding.surroundings import look
 from foldfab.folding.unit_fold import Refusal, UnitFold, fold_unit
@@ -100,13 +98,8 @@ def _unit_played(
         cost = sum(o.cost for o in chosen.values())
         weight = sum(float(options[p].weight[proposal.chosen[p]]) for p in unit.patches)
         return UnitFold(unit, chosen, reasons, *result, around.cluster, cost, weight, around.key)
-    if lanes := hampered(own, found):
-        for x in lanes:
-            interrupt(problem, own, x)
-        around = look(problem, scene, own)
-        found = prospects(problem, own, around, in_place=False)
-    for patch, many in found.lanes.items():
-        group.lanes[patch] += tuple(x for x in many if x not in group.lanes[patch])
+    for patch, lanes in found.lanes.items():
+        group.lanes[patch] += tuple(x for x in lanes if x not in group.lanes[patch])
     learn(group, lessons_of(group, scene, unit, around, options, proposal, done, result))
     learn(group, lessons_of_others(group, scene, unit, around, options, proposal, done, found))
     return None

@@ -62,8 +62,6 @@ class Surroundings:
     """Its boxes as they move with the unit's bases, by way and section, as far as that was asked for."""
     met: dict[int, tuple[Bools, set[int]]] = field(default_factory=dict)
     """By lane of the unit that was held against it, which of its pieces (N_s,) have no room, and the boxes it meets."""
-    panels: dict[int, Bools] = field(default_factory=dict)
-    """By lane of which something is met, the pieces of which panels meet it."""
 
 
 def look(problem: Problem, scene: Scene, own: Repertoire) -> Surroundings:

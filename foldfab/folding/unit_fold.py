@@ -15,18 +15,18 @@ from foldfab.folding import basic
 from foldfab.folding.basic import Option, Variant
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.graph import Graph, Lesson
-from foldfab.folding.interruption import hindered
+from foldfab.folding.interruption import interrupted
 from foldfab.folding.model import Chain
 from foldfab.folding.press import Motion
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import Prospects, blocked_pieces, prospects, unhindered
 from foldfab.folding.realise import Clash, realised
 from foldfab.folding.reasons import reason_against, reasons_of
-from foldfab.folding.repertoire import Place, Repertoire, extend, interrupt
+from foldfab.folding.repertoire import Place, Repertoire, extend
 from foldfab.folding.scene import Scene, alone
 from foldfab.folding.surroundings import Surroundings, look
 from foldfab.folding.units import Unit
-from foldfab.geometry.arrays import Array, Indices
+from foldfab.geometry.arrays import Indices
 
 ROUNDS = 60
 """Choices that are tried for one unit before it counts as not foldable at this moment."""
@@ -141,7 +141,11 @@ def least_choice(problem: Problem, own: Repertoire) -> Choice:
         return found, Graph(problem, own, found, np.zeros(3))
 
     found, graph = posed()
-    _, graph, picked = _bettered(problem, own, found, graph, graph.cheapest(), posed, np.zeros(3))
+    _, graph, picked = _bettered(problem, own, found, graph, graph.cheapest(), posed)
+    # Only here, before anything rests on what the unit counts at least.
+    if interrupted(problem, own, graph, picked):
+        found, graph = posed()
+        _, graph, picked = _bettered(problem, own, found, graph, graph.cheapest(), posed)
     if picked is None:
         return Choice(np.inf, {})
     chosen = {o.patch: o.place(i) for o, i in zip(graph.options, picked, strict=True)}
@@ -216,12 +220,12 @@ def _picked(
         found = prospects(problem, own, around, in_place=in_place)
         return found, Graph(problem, own, found, around.offset, learned, scene.chosen)
 
-    return _bettered(problem, own, found, graph, known or graph.cheapest(), posed, around.offset, scene.chosen)
+    return _bettered(problem, own, found, graph, known or graph.cheapest(), posed)
 
 
 def _bettered(
     problem: Problem, own: Repertoire, found: Prospects, graph: Graph, picked: tuple[int, ...] | None,
-    posed: Callable[[], tuple[Prospects, Graph]], offset: Array, chosen: Mapping[str, Option] | None = None,
+    posed: Callable[[], tuple[Prospects, Graph]],
 ) -> tuple[Prospects, Graph, tuple[int, ...] | None]:  # fmt: skip
     """The cheapest choice once all lanes are made that could better it, and the graph `posed` with them.
 
@@ -233,12 +237,6 @@ def _bettered(
             extend(problem, own, wanted)
             found, graph = posed()
             wanted = _bettering(problem, own, graph, weight)
-        picked = graph.cheapest()
-    is_least = picked is not None and graph.weight(picked) <= problem.least.get(own.unit, -np.inf)
-    while not is_least and (lanes := hindered(problem, own, found, graph, picked, offset, chosen)):
-        for x in lanes:
-            interrupt(problem, own, x)
-        found, graph = posed()
         picked = graph.cheapest()
     return found, graph, picked
 

@@ -17,7 +17,6 @@ from foldfab.folding import basic
 from foldfab.folding.basic import Option
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.graph import Graph
-from foldfab.folding.interruption import hampered
 from foldfab.folding.lanes import Lane
 from foldfab.folding.options import Options
 from foldfab.folding.ordering import after
@@ -25,7 +24,6 @@ from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import prospects, unhindered
 from foldfab.folding.realise import Clash, realised
 from foldfab.folding.rehearsal import first_clash
-from foldfab.folding.repertoire import interrupt
 from foldfab.folding.scene import open_scene, shown
 from foldfab.folding.surroundings import look
 from foldfab.folding.unit_fold import UnitFold
@@ -109,9 +107,7 @@ def _holds(
             return False
         result = realised(problem, scene, unit, around, {p: chosen[p] for p in unit.patches})
         if isinstance(result, Clash):
-            for x in hampered(own, prospects(problem, own, around, in_place=False)):
-                interrupt(problem, own, x)
-            for patch, many in prospects(problem, own, look(problem, scene, own), in_place=False).lanes.items():
+            for patch, many in prospects(problem, own, around, in_place=False).lanes.items():
                 lanes[patch] += tuple(x for x in many if x not in lanes[patch])
             return False
         fold = UnitFold(unit, {p: chosen[p] for p in unit.patches}, {}, *result, around.cluster, 0.0, 0.0, around.key)

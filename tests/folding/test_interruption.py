@@ -7,25 +7,23 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from foldfab.folding import unit_fold
+from foldfab.folding import interruption, unit_fold
 from foldfab.folding.basic import WHOLE
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.graph import Graph
 from foldfab.folding.improve import weight
-from foldfab.folding.interruption import touched
 from foldfab.folding.lanes import Lane
 from foldfab.folding.model import FoldSolution
 from foldfab.folding.ordering import floors
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import unhindered
-from foldfab.folding.repertoire import interrupt
+from foldfab.folding.repertoire import interrupt, stretches
 from foldfab.folding.scene import open_scene
 from foldfab.folding.solve import _ordered
 from foldfab.recipe.model import Part
 from foldfab.validity.verify import violations
 
 from .brute import NO_MORE, cheaper
-from .every import whole
 
 Make = Callable[..., Problem]
 HINGE = 1 / 3 / 2
@@ -45,7 +43,7 @@ def test_an_interrupted_hinge_is_the_cheapest_answer(
 def test_without_it_a_part_is_shrunk(
     solution: Callable[..., FoldSolution], butting: tuple[Part, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(unit_fold, "hindered", lambda *_: [])
+    monkeypatch.setattr(unit_fold, "interrupted", lambda *_: False)
     made = solution(butting, slanting=False)
     assert made.cost > HINGE + 1e-3 and not any(c.breaks for c in made.chains)
 
@@ -80,14 +78,25 @@ def test_lanes_are_made_again_only_where_hinges_meet_something(problem: Make, bu
     lanes = repertoire(made, made.units[0]).lanes
     assert any(x.variant.hinged != WHOLE for x in lanes)
     free = problem("h_scaffold", slanting=False)
-    own = whole(free, free.units[0])
-    assert touched(own) == [] and all(x.variant.hinged == WHOLE for x in own.lanes)
+    floors(free)
+    assert all(x.variant.hinged == WHOLE for x in repertoire(free, free.units[0]).lanes)
+
+
+def test_lanes_that_did_not_pay_are_no_options(
+    problem: Make, butting: tuple[Part, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(interruption, "ROUNDS", 1)
+    made = problem(butting, slanting=False)
+    floors(made)
+    own = repertoire(made, made.units[0])
+    assert any(x.variant.hinged != WHOLE for x in own.lanes) and not own.interrupted
+    assert all(x.variant.hinged == WHOLE for many in own.plain.values() for x in many)
 
 
 def test_each_place_gets_the_least_stretch_that_holds(problem: Make, butting: tuple[Part, ...]) -> None:
     made = problem(butting, slanting=False, shrink_steps=20)
     own = repertoire(made, made.units[0])
-    interrupt(made, own, own.plain["back"][0])
+    interrupt(made, own, own.plain["back"][0], stretches(made, own, own.plain["back"][0]))
     found = [x.variant.hinged for x in own.plain["back"] if x.variant.hinged != WHOLE]
     # A twentieth of 100 mm is less than a hinge wants, two are enough.
     assert found == [pytest.approx((k / 20, k / 20 + 0.1)) for k in range(19)]
@@ -96,7 +105,7 @@ def test_each_place_gets_the_least_stretch_that_holds(problem: Make, butting: tu
 def test_windows_hold_the_stretch(problem: Make, butting: tuple[Part, ...]) -> None:
     made = problem(butting, slanting=False)
     own = repertoire(made, made.units[0])
-    interrupt(made, own, own.plain["back"][0])
+    interrupt(made, own, own.plain["back"][0], stretches(made, own, own.plain["back"][0]))
     options = Graph(made, own, unhindered(made, own), np.zeros(3)).options[made.units[0].patches.index("back")]
     steps = made.options.shrink_steps
     for i in np.nonzero(np.isfinite(options.weight[:-1]))[0].tolist():

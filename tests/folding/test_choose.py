@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from foldfab.folding import choose
-from foldfab.folding.choose import Combination, cheapest
+from foldfab.folding.choose import Combination, cheaper, cheapest
 from foldfab.geometry.arrays import Array, Bools
 
 Conflicts = dict[tuple[int, int], Bools]
@@ -63,6 +63,25 @@ def test_nor_is_one_where_the_search_is_handed_over(limit: int, widest: int, ins
         patch.setattr(choose, "LIMIT", limit)
         patch.setattr(choose, "WIDEST", widest)
         assert_cheapest(*instance)
+
+
+@given(instances(), st.sampled_from([0.3, 0.8, INF]))
+@settings(deadline=None, derandomize=True, max_examples=200)
+def test_what_is_cheaper_than_something_is_found_where_there_is_any(instance: Instance, than: float) -> None:
+    costs, conflicts, forbidden = instance
+    best, found = cheapest(costs, conflicts, forbidden), cheaper(costs, conflicts, forbidden, than)
+    if best is None or price(best, costs) >= than - 1e-9:
+        assert found is None
+    else:
+        assert found is not None and is_allowed(found, costs, conflicts, forbidden)
+        assert price(found, costs) == pytest.approx(price(best, costs))
+
+
+def test_nothing_cheaper_is_found_without_branches(monkeypatch: pytest.MonkeyPatch) -> None:
+    costs, conflicts = [np.array([0.0, 1.0])] * 2, {(0, 1): np.array([[True, False], [False, False]])}
+    assert cheaper(costs, conflicts, frozenset(), 2.0) is not None
+    monkeypatch.setattr(choose, "FEW_BRANCHES", 0)
+    assert cheaper(costs, conflicts, frozenset(), 2.0) is None
 
 
 def test_both_ways_to_search_are_taken(monkeypatch: pytest.MonkeyPatch) -> None:

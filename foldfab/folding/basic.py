@@ -144,11 +144,14 @@ def stretches(
 
     Fewer knuckles never meet more, and cost nothing: these do for all ways to interrupt its hinges.
     """
-    found, start = [], 0
+    spans, least = chain.hinge_spans.tolist(), thickness.of(chain.panel).hinge_width - 1e-9
+    found, start = list[tuple[int, int]](), 0
     for end in range(1, steps + 1):
         for first in range(end - 1, start - 1, -1):
-            breaks = _breaks(site, replace(variant, hinged=(first / steps, end / steps)), thickness)
-            if breaks and holds(replace(chain, breaks=breaks), thickness):
+            marks = _breaks(site, replace(variant, hinged=(first / steps, end / steps)), thickness)
+            low = marks[0][1] if first > 0 else -np.inf
+            high = marks[-1][0] if end < steps else np.inf
+            if marks and all(min(b, high) - max(a, low) >= least for a, b in spans):
                 found.append((first, end))
                 start = first + 1
                 break

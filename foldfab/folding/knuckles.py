@@ -18,7 +18,7 @@ from foldfab.folding.ordering import after
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import blocked_pieces, in_the_way
 from foldfab.folding.repertoire import Repertoire, lane
-from foldfab.folding.scene import Scene, shown
+from foldfab.folding.scene import Scene, open_scene, shown
 from foldfab.folding.simulate import clashes
 from foldfab.folding.surroundings import Surroundings, look
 from foldfab.folding.unit_fold import UnitFold
@@ -30,15 +30,16 @@ Mark = tuple[int, int]
 """First and last cutting point of a stretch, in N_s-ths of the width."""
 
 
-def given_back(problem: Problem, scene: Scene, folds: tuple[UnitFold, ...]) -> tuple[tuple[UnitFold, ...], list[str]]:
+def given_back(problem: Problem, folds: tuple[UnitFold, ...]) -> tuple[tuple[UnitFold, ...], list[str]]:
     """The folds with all knuckles that have room, and what there is to say of hinges that stay interrupted.
 
     Args:
         problem: the scaffold and its thickness.
-        scene: the open furniture.
         folds: the folds of its units in their order.
     """
-    notes = []
+    if not any(c.breaks for fold in folds for c in fold.chains):
+        return folds, []
+    scene, notes = open_scene(problem), list[str]()
     for k, fold in enumerate(folds):
         for patch in sorted(c.patch for c in fold.chains if c.breaks):
             folds, free, met = _whole_again(problem, scene, folds, k, patch)

@@ -150,7 +150,7 @@ def _refused(ordered: Ordered) -> str:
 
 def solution(problem: Problem, least: float, ordered: Ordered) -> FoldSolution:
     """The solution that an order of folds makes, no order counting less than `least` in the search."""
-    folds, interrupted = given_back(problem, open_scene(problem), ordered.folds)
+    folds, interrupted = given_back(problem, ordered.folds)
     ordered = replace(ordered, folds=folds)
     chains = tuple(sorted((c for f in ordered.folds for c in f.chains), key=lambda c: c.patch))
     changed = [_modification(problem, fold, patch) for fold in ordered.folds for patch in fold.unit.patches]

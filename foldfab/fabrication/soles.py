@@ -148,7 +148,7 @@ def _wedge(a: Array, b: Array, along: Array, turns: tuple[float | None, float | 
 
 
 def _runs(place: Array, along: Array, around: Array, first: Array) -> Iterator[tuple[float, float]]:
-    """The stretches of an edge (2, 2), as shares, that are bevelled: the first layer reaches there, and is no thin wall."""
+    """The stretches of an edge (2, 2), as shares, that are bevelled: the first layer reaches there, no thin wall."""
     count = max(1, int(np.ceil(np.linalg.norm(place[1] - place[0]) / STEP)))
     points = place[0] + ((np.arange(count) + 0.5) / count)[:, None] * (place[1] - place[0])
     inward = np.array([-along[1], along[0]])

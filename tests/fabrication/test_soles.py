@@ -17,9 +17,9 @@ from foldfab.fabrication.analytic import analytic
 from foldfab.fabrication.coupon import coupon
 from foldfab.fabrication.model import Assembly
 from foldfab.fabrication.printed import printed
-from foldfab.fabrication.shapes import Shape, box, cut, cone, placed, rod, union
-from foldfab.fabrication.solids import Outline, Solid
+from foldfab.fabrication.shapes import Shape, box, cone, cut, placed, rod, union
 from foldfab.fabrication.soles import DRAWN_IN, UNEVEN, bevel, bevelled
+from foldfab.fabrication.solids import Outline, Solid
 from foldfab.recipe.model import Posture, Printer
 
 LAYER = 0.2

@@ -131,7 +131,9 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     shapes.add_argument("--split-shells", action="store_true", default=None, help=shells)
     group.add_argument("--no-slanting", dest="slanting", action="store_false", default=None, help="fold in place only")
     group.add_argument("--stay-in-box", action="store_true", default=None, help="stay within the bounding box")
-    group.add_argument("--latch", action="store_true", default=None, help="grooves for pins of filament that hold base hinges open")
+    group.add_argument(
+        "--latch", action="store_true", default=None, help="grooves for pins of filament that hold base hinges open"
+    )
     group.add_argument("--symmetry", action="store_true", default=None, help="treat mirrored parts alike")
     group.add_argument("--own-thickness", action="store_true", default=None, help="parts as thick as they are, or more")
 

@@ -284,7 +284,9 @@ def _latching(assembly: Assembly) -> list[str]:
     """Which pins to cut, and where they go."""
     latches = [joint.latch for joint in assembly.joints if joint.latch is not None]
     lengths = Counter(f"{latch.length:.1f}" for latch in latches)
-    cut = ", ".join(f"{count} of {length} mm" for length, count in sorted(lengths.items(), key=lambda row: float(row[0])))
+    cut = ", ".join(
+        f"{count} of {length} mm" for length, count in sorted(lengths.items(), key=lambda row: float(row[0]))
+    )
     bases = ", ".join(sorted({latch.base for latch in latches}))
     how = (
         f"to hold it open, cut pins of {FILAMENT:g} mm filament ({cut}) and press each into the groove across the slot "

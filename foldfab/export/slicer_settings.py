@@ -20,7 +20,7 @@ from foldfab.slicing.profile import CLOSING_RADIUS_MM, ELEPHANT_FOOT_MM
 PRUSA, BAMBU = "Metadata/Slic3r_PE_model.config", "Metadata/model_settings.config"
 XML = '<?xml version="1.0" encoding="UTF-8"?>\n'
 SETTINGS = {"elefant_foot_compensation": f"{ELEPHANT_FOOT_MM:g}", "slice_closing_radius": f"{CLOSING_RADIUS_MM:g}"}
-"""Of the object, for all of these programs: a wide closing radius welds hinges, and first layers are drawn in already."""
+"""Of the object, for all of these programs: a wide closing radius welds hinges; first layers are drawn in already."""
 
 
 Object = tuple[int, str, tuple[Shell, ...]]

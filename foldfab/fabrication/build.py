@@ -85,7 +85,11 @@ def _finished(
     draft: Assembly, made: dict[str, Solid], ramps: dict[str, list[Shape]]
 ) -> tuple[dict[str, Solid], Assembly, list[Finding]]:
     """What is cut once the stops stand: ramps on edge, bores that are to be open for their pins, edges on the bed."""
-    solution, props, has_bores = draft.solution, dict[str, Solid](), STYLES[draft.solution.thickness.hinge].has_loose_pin
+    solution, props, has_bores = (
+        draft.solution,
+        dict[str, Solid](),
+        STYLES[draft.solution.thickness.hinge].has_loose_pin,
+    )
     if draft.up is not None:
         made = {name: solids.tidied(solids.cut(b, [printed(r) for r in ramps[name]])) for name, b in made.items()}
         props = propped(made, draft.poses, draft.up, solution.thickness.gap)
@@ -103,7 +107,11 @@ def _bevelled(draft: Assembly, made: dict[str, Solid]) -> tuple[dict[str, Solid]
     done, shapes = eased(draft, whole, made, draft.shapes)
     joints = measured(draft, done)
     is_prompt = {joint.name: [_is_prompt(angle) for angle in joint.stop_deg] for joint in draft.joints}
-    late = [j for j in joints if any(was and not _is_prompt(a) for was, a in zip(is_prompt[j.name], j.stop_deg, strict=True))]
+    late = [
+        j
+        for j in joints
+        if any(was and not _is_prompt(a) for was, a in zip(is_prompt[j.name], j.stop_deg, strict=True))
+    ]
     draft = replace(draft, spared=frozenset(name for joint in late for name in joint.parts))
     # Parts that are cut have other edges on the bed afterwards.
     if cuts_parts(draft.solution, draft.posture):

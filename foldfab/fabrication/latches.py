@@ -1,8 +1,8 @@
 """A lock pin that holds a base hinge open: 1.75 mm filament, pressed into a groove across the slot of a tongue.
 
-The groove runs along the hinge in the outer face of the base, behind the tongue, and on into the plate on either side of
-its slot. With the pin in it the tongue cannot swing back, without it the hinge is free; nothing gives as it turns. The
-mouth is narrower than the filament, which snaps in; it is pushed out again through the slot, from the inner face.
+The groove runs along the hinge in the outer face of the base, behind the tongue, and on into the plate on either side
+of its slot. With the pin in it the tongue cannot swing back, without it the hinge is free; nothing gives as it turns.
+The mouth is narrower than the filament, which snaps in; it is pushed out again through the slot, from the inner face.
 
 The hinge holds up to the least of four moments about its axis, with the tongue's w × t, the pin's arm r and diameter d:
 
@@ -11,7 +11,7 @@ The hinge holds up to the least of four moments about its axis, with the tongue'
 - is pressed into the plastic of its seats, F = 2 σ d · `SEAT`: each M = F r;
 - the tongue breaks across its layers where it leaves its knuckle: M = τ w t²/6.
 
-σ and τ are what FDM PLA yields at along its lines and breaks at across its layers by Stratasys' data sheet.
+σ and τ are what a data sheet of FDM PLA tells: 45 N/mm² at yield along its lines, 26 at break across its layers.
 It is tried on the solids: the pin meets nothing open, and the tongue meets it within a few degrees.
 """
 
@@ -34,7 +34,7 @@ FILAMENT = 1.75
 SNAP = 0.15
 """How much narrower than the filament the mouth of a groove is, mm."""
 LEAST_FIT = 0.1
-"""What is between a pin and its tongue is half the clearance, and at least this, mm; around the pin there is half of it."""
+"""What is between a pin and its tongue is half the clearance, and at least this, mm; half of it is around the pin."""
 SUNK = 0.1
 """How far a groove ends below the face that it opens, without its mouth, mm."""
 SEAT = 2.4
@@ -83,8 +83,11 @@ class Lock:
 
     def at(self, origin: Array, axes: Array) -> Lock:
         """The same in another place."""
-        shapes = (self.pin, self.pushed, self.core, self.groove, self.seats, self.way)
-        return Lock(*(placed(s, origin, axes) for s in shapes), self.ends @ axes + origin, self.into @ axes, self.moment)
+        pin, pushed, core, groove, seats, way = (
+            placed(s, origin, axes) for s in (self.pin, self.pushed, self.core, self.groove, self.seats, self.way)
+        )
+        ends, into = self.ends @ axes + origin, self.into @ axes
+        return Lock(pin, pushed, core, groove, seats, way, ends, into, self.moment)
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,7 +149,7 @@ def lock(tongue: Tongue, depth: float, plate: float, gap: float) -> Lock | None:
 
 
 def moment(width: float, thick: float, arm: float, gap: float) -> float:
-    """What a pin holds at `arm` from the axis, behind a tongue `width` × `thick` in a slot with a gap beside it; N·mm."""
+    """What a pin holds at `arm` from the axis, behind a tongue `width` × `thick` in a slot a gap wider; N·mm."""
     shear = 2 * ALONG / np.sqrt(3) * np.pi * FILAMENT**2 / 4
     bend = 12 / (width + 2 * gap) * ALONG * np.pi * FILAMENT**3 / 32
     pressed = 2 * ALONG * FILAMENT * SEAT
@@ -162,7 +165,7 @@ def held_at(range_: Turn, panel: Solid, made: Lock, *, is_base_first: bool) -> f
 
 
 def is_free(bodies: Iterable[Solid], made: Lock) -> bool:
-    """Whether bodies, the base with its groove among them, leave room for the pin and its way there where all is open."""
+    """Whether bodies, the base with its groove among them, leave room for the pin and its way there, open."""
     pin, way = printed(made.pin), printed(made.way)
     return all(solids.overlap(solid, piece) <= MEETS for solid in bodies for piece in (pin, way))
 

@@ -1,7 +1,7 @@
 """How a print stands on the bed, by posture: the turn from the canonical frame, and which end is up.
 
-Open, it is turned about z so that it takes least of the bed. On edge, all hinge axes are vertical, so that every gap is a sideways gap; this needs axes that are all parallel. Of the
-two ends, the one that leaves fewer bodies in the air is down.
+Open, it is turned about z so that it takes least of the bed. On edge, all hinge axes are vertical, so that every gap is
+a sideways gap; this needs parallel axes. Of the two ends, that which leaves fewer bodies in the air is down.
 """
 
 from __future__ import annotations

@@ -33,6 +33,8 @@ LAP = 0.02
 """How far wedges reach into each other in a corner, mm."""
 UNEVEN = 0.01
 """By how much neighbouring bevels differ: where four faces meet in a point, kernels leave slivers, mm."""
+TRIED = (0.0, 0.017, -0.013, 0.031)
+"""By how much a bevel is wider than meant, mm, best first: where edges nearly meet, a mesh may not stay closed."""
 PIECE = ":"
 """What stands between the name of a part and the number of a piece of it."""
 SHARP = 0.5
@@ -72,22 +74,29 @@ def eased(
 def bevelled(
     made: Mapping[str, Solid], shapes: Mapping[str, Shape], stance: Mapping[str, Array], layer: float
 ) -> tuple[dict[str, Solid], dict[str, Shape]]:
-    """Bodies without their edges on the bed, by the motions that take them there; what does not reach it stays."""
+    """Bodies without their edges on the bed, by the motions that take them there; what does not reach it stays.
+
+    A body that no bevel would leave sound keeps its edges.
+    """
     done, told = dict(made), dict(shapes)
     for name, pose in sorted(stance.items()):
-        cutter = _cutter(solids.moved(made[name], pose), layer)
-        if cutter is not None:
+        for more in TRIED:
+            cutter = _cutter(solids.moved(made[name], pose), layer, bevel(layer) + more)
+            if cutter is None:
+                break
             back = placed(cutter, -pose[:3, 3] @ pose[:3, :3], pose[:3, :3])
-            done[name] = solids.tidied(solids.cut(made[name], [printed(back)]))
-            told.update({name: cut(shapes[name], [back])} if name in shapes else {})
+            solid = solids.tidied(solids.cut(made[name], [printed(back)]))
+            if solids.stays_closed(solid) and solids.pieces(solid) == solids.pieces(made[name]):
+                done[name] = solid
+                told.update({name: cut(shapes[name], [back])} if name in shapes else {})
+                break
     return done, told
 
 
-def _cutter(body: Solid, layer: float) -> Shape | None:
+def _cutter(body: Solid, layer: float, width: float) -> Shape | None:
     """What lies below the bevels of a body that stands on z = 0, or None where it does not."""
     if abs(float(solids.bounds(body)[0][2])) > ON_BED:
         return None
-    width = bevel(layer)
     # What is wider above or below the middle of the layer, as a barrel that lies on the bed, is drawn in as a whole.
     around = solids.silhouette(solids.between(body, 0.0, width + BEYOND + 3 * UNEVEN))
     wedges = list(_wedges(_rings(around), _rings(solids.section(body, layer / 2)), width))
@@ -148,7 +157,7 @@ def _wedge(a: Array, b: Array, along: Array, turns: tuple[float | None, float | 
 
 
 def _runs(place: Array, along: Array, around: Array, first: Array) -> Iterator[tuple[float, float]]:
-    """The stretches of an edge (2, 2), as shares, that are bevelled: the first layer reaches there, and is no thin wall."""
+    """The stretches of an edge (2, 2), as shares, that are bevelled: the first layer reaches there, no thin wall."""
     count = max(1, int(np.ceil(np.linalg.norm(place[1] - place[0]) / STEP)))
     points = place[0] + ((np.arange(count) + 0.5) / count)[:, None] * (place[1] - place[0])
     inward = np.array([-along[1], along[0]])

@@ -80,7 +80,7 @@ class Trial:
         ramps: Mapping[str, list[Shape]] = MappingProxyType({}),
         locks: Mapping[str, Lock] = MappingProxyType({}),
     ) -> None:
-        """`ramps` is what will be cut from bodies once they have their stops, `locks` by joint the latches they have."""
+        """`ramps` is what will be cut from bodies once they have their stops, `locks` by joint their latches."""
         self.assembly, self.made, self.shapes = assembly, made, dict(assembly.shapes)
         self._plain = made
         self._passage = Passage(assembly.solution, instants(assembly))

@@ -204,13 +204,13 @@ def _followed(
     return down, fold, play
 
 
-def _bent(
-    held: list[Chain], down: Mapping[str, Array], fold: Mapping[str, Array], play: Mapping[str, Array]
-) -> Bools:
+def _bent(held: list[Chain], down: Mapping[str, Array], fold: Mapping[str, Array], play: Mapping[str, Array]) -> Bools:
     """(k - 1,) the intervals halfway through which a chain and its bases are apart."""
     found = np.zeros(len(next(iter(down.values()))) - 1, dtype=bool)
     for chain in held:
-        drop, s, give = map(_halfway, (down[chain.anchor] - down[chain.far or ""], fold[chain.patch], play[chain.patch]))
+        drop, s, give = map(
+            _halfway, (down[chain.anchor] - down[chain.far or ""], fold[chain.patch], play[chain.patch])
+        )
         found |= np.abs(drop + give + reach(chain, s)[:, 1] - open_height(chain)) > STRAIGHT
     return found
 

@@ -65,9 +65,7 @@ def test_nothing_is_latched_unasked(assembled: Callable[..., Assembly]) -> None:
 
 
 @pytest.mark.parametrize("posture", ["open", "folded"])
-def test_with_its_pin_a_hinge_is_held_and_without_it_is_free(
-    posture: str, assembled: Callable[..., Assembly]
-) -> None:
+def test_with_its_pin_a_hinge_is_held_and_without_it_is_free(posture: str, assembled: Callable[..., Assembly]) -> None:
     assembly = assembled("table", posture, latch=True)
     made = as_solids(assembly)
     for joint in assembly.joints:
@@ -259,7 +257,14 @@ def test_check_finds_a_pin_that_is_not_as_stated(problem: str, folder: Path) -> 
 
 @pytest.mark.parametrize(
     "change",
-    [{"base": "nobody"}, {"pin_mm": 0}, {"pin_mm": 50}, {"holds_at_deg": 90}, {"holds_at_deg": "x"}, {"ends": [[0, 0]]}],
+    [
+        {"base": "nobody"},
+        {"pin_mm": 0},
+        {"pin_mm": 50},
+        {"holds_at_deg": 90},
+        {"holds_at_deg": "x"},
+        {"ends": [[0, 0]]},
+    ],
     ids=str,
 )
 def test_check_refuses_a_latch_that_is_none(change: dict[str, Any], folder: Path) -> None:

@@ -17,9 +17,9 @@ from foldfab.fabrication.analytic import analytic
 from foldfab.fabrication.coupon import coupon
 from foldfab.fabrication.model import Assembly
 from foldfab.fabrication.printed import printed
-from foldfab.fabrication.shapes import Shape, box, cut, cone, placed, rod, union
-from foldfab.fabrication.solids import Outline, Solid
+from foldfab.fabrication.shapes import Shape, box, cone, cut, placed, rod, union
 from foldfab.fabrication.soles import DRAWN_IN, UNEVEN, bevel, bevelled
+from foldfab.fabrication.solids import Outline, Solid
 from foldfab.recipe.model import Posture, Printer
 
 LAYER = 0.2
@@ -179,3 +179,24 @@ def test_the_coupon_is_drawn_in() -> None:
     made = coupon(4.0, "open")
     plate = next(solids.from_mesh(b.vertices, b.faces) for b in made.bodies if b.name == "plate")
     assert is_within(plate.slice(0.1), solids.grown(plate.slice(0.5), -DRAWN_IN + 0.01))
+
+
+@pytest.mark.parametrize("broken", [0, 1, len(soles.TRIED)])
+def test_a_bevel_that_would_leave_a_body_unsound_is_tried_a_little_wider(
+    broken: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A body that none of them leaves sound keeps its edges."""
+    shape, judged = box((0, 0, 0), (20, 10, 4)), solids.pieces
+    plain, usual = printed(shape).volume(), stood(shape).volume()
+    bevels: list[Solid] = []
+
+    def pieces(solid: Solid) -> int:
+        if solid.volume() < plain - 1e-6:
+            bevels.append(solid)
+            return 2 if len(bevels) <= broken else judged(solid)
+        return judged(solid)
+
+    monkeypatch.setattr(solids, "pieces", pieces)
+    made = stood(shape).volume()
+    assert len(bevels) == min(broken + 1, len(soles.TRIED))
+    assert (made == usual, made == plain) == (broken == 0, broken == len(soles.TRIED))

@@ -23,7 +23,7 @@ HEIGHT = 73.0
 def stacked(pair: Callable[..., tuple[Part, ...]], scaffold: Callable[..., Scaffold]) -> Scaffold:
     """Two pairs on each other, which fold flat only with pockets in their bases."""
     lower = pair(HEIGHT)
-    upper = tuple(replace(p, name=f"upper-{p.name}", center=p.center + [0.0, 0.0, HEIGHT]) for p in lower[1:])
+    upper = tuple(replace(p, name=f"upper-{p.name}", center=p.center + np.array([0.0, 0.0, HEIGHT])) for p in lower[1:])
     return scaffold((*lower, *upper), slanting=False)
 
 
@@ -50,4 +50,3 @@ def test_a_unit_that_cannot_sink_as_deep_is_no_copy(stacked: Scaffold) -> None:
     alone = made(problem.scaffold)
     wanted = least_choice(alone, repertoire(alone, alone.units[1]))
     assert least_choice(problem, repertoire(problem, second)).weight == wanted.weight == np.inf
-

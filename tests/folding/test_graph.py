@@ -97,7 +97,7 @@ def test_beside_a_promise_nothing_is_dragged_along(problem: Make) -> None:
 
 
 def test_what_was_learned_of_lanes_that_are_not_there_any_more_is_left_aside(problem: Make) -> None:
-    """Surroundings that differ within rounding are the same, but plinths over what lies in them are as high as it is."""
+    """Surroundings that differ within rounding are the same, but plinths over what lies there are as high as it is."""
     made = problem("corner", slanting=False)
     (unit,) = made.units
     own = repertoire(made, unit)

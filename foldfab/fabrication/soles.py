@@ -18,7 +18,7 @@ from foldfab.fabrication.posture import ON_BED, needs_pins, printed_pose, printe
 from foldfab.fabrication.printed import printed
 from foldfab.fabrication.shapes import Shape, cut, placed, union, wrap
 from foldfab.fabrication.solids import Outline, Solid
-from foldfab.fabrication.walls import LINE, OPPOSITE
+from foldfab.fabrication.walls import LINE, OPPOSITE, thin_sides
 from foldfab.geometry.arrays import Array, Bools
 
 DRAWN_IN = 0.2
@@ -86,11 +86,17 @@ def bevelled(
                 break
             back = placed(cutter, -pose[:3, 3] @ pose[:3, :3], pose[:3, :3])
             solid = solids.tidied(solids.cut(made[name], [printed(back)]))
-            if solids.stays_closed(solid) and solids.pieces(solid) == solids.pieces(made[name]):
+            if _is_sound(solid, made[name]):
                 done[name] = solid
                 told.update({name: cut(shapes[name], [back])} if name in shapes else {})
                 break
     return done, told
+
+
+def _is_sound(body: Solid, before: Solid) -> bool:
+    """Whether a body with its bevels is as whole as before, and no thinner anywhere."""
+    is_whole = solids.stays_closed(body) and solids.pieces(body) == solids.pieces(before)
+    return is_whole and thin_sides(body) <= thin_sides(before)
 
 
 def _cutter(body: Solid, layer: float, width: float) -> Shape | None:

@@ -313,7 +313,7 @@ def _kept(problem: Problem, own: Repertoire, x: Lane, inside: Array) -> tuple[Ar
     kept = np.zeros((len(marks := stretches(problem, own, x)), steps), dtype=np.float32)
     for row, (a, b) in zip(kept, marks, strict=True):
         row[a:b] = 1
-    within = inside @ kept.T == kept.sum(1)
+    within = ~((inside[:, None] == 0) & (kept > 0)).any(2)
     return np.concatenate([inside, kept]), np.concatenate([np.eye(len(inside), dtype=bool), within], axis=1)
 
 

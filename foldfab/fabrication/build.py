@@ -85,11 +85,8 @@ def _finished(
     draft: Assembly, made: dict[str, Solid], ramps: dict[str, list[Shape]]
 ) -> tuple[dict[str, Solid], Assembly, list[Finding]]:
     """What is cut once the stops stand: ramps on edge, bores that are to be open for their pins, edges on the bed."""
-    solution, props, has_bores = (
-        draft.solution,
-        dict[str, Solid](),
-        STYLES[draft.solution.thickness.hinge].has_loose_pin,
-    )
+    solution, props = draft.solution, dict[str, Solid]()
+    has_bores = draft.up is None and STYLES[solution.thickness.hinge].has_loose_pin
     if draft.up is not None:
         made = {name: solids.tidied(solids.cut(b, [printed(r) for r in ramps[name]])) for name, b in made.items()}
         props = propped(made, draft.poses, draft.up, solution.thickness.gap)
@@ -98,7 +95,7 @@ def _finished(
         made, shapes = bored(solution, made, draft.shapes)
         draft = replace(draft, shapes=shapes)
     made, draft = _bevelled(replace(draft, propped=bodies(solution, props)), made)
-    return made, draft, blocked(draft, made) if has_bores and draft.up is None else []
+    return made, draft, blocked(draft, made) if has_bores else []
 
 
 def _bevelled(draft: Assembly, made: dict[str, Solid]) -> tuple[dict[str, Solid], Assembly]:

@@ -19,7 +19,7 @@ from foldfab.folding.balance import can_agree
 from foldfab.folding.basic import WHOLE
 from foldfab.folding.lanes import Lane
 from foldfab.folding.problem import Problem
-from foldfab.folding.repertoire import Repertoire, cuts_of, lane, regions, resting, stretches, swept
+from foldfab.folding.repertoire import Repertoire, cuts_of, lane, pieces_met, regions, resting, stretches, swept
 from foldfab.folding.space import Batch, conflicts, meetings
 from foldfab.geometry.arrays import Array, Bools, Indices
 
@@ -246,14 +246,14 @@ def _table(
         for j, b in enumerate(second):
             for p in {a.number, own.plain_of.get(a.number, a.number)}:
                 for q in {b.number, own.plain_of.get(b.number, b.number)}:
-                    pieces = _panels_met(own, p, q) if is_bare else own.pieces.get((min(p, q), max(p, q)))
+                    pieces = _panels_met(own, p, q) if is_bare else pieces_met(own.pieces, p, q)
                     if pieces is not None:
-                        met[i, :, j] |= pieces if p < q else pieces.T
+                        met[i, :, j] |= pieces
             never[i, j] = not (in_modes or drag_alike(a, b)) or not snap_alike(problem, own, a, b)
     made = _of_windows(met, never, inside, count)
     for i, a in enumerate(first) if is_bare else ():
         for j, b in enumerate(second):
-            if (min(a.number, b.number), max(a.number, b.number)) in own.pieces:
+            if pieces_met(own.pieces, a.number, b.number) is not None:
                 block = made[i * count : (i + 1) * count, j * count : (j + 1) * count]
                 block |= _without_room(problem, own, a, b, inside)
     return made
@@ -265,13 +265,13 @@ def may_be_interrupted(own: Repertoire, x: Lane) -> bool:
 
 
 def _panels_met(own: Repertoire, p: int, q: int) -> Bools | None:
-    """Which pieces of two lanes meet without what may still be interrupted; those of the lower number first."""
+    """Which pieces of two lanes meet without what may still be interrupted, those of the first one first."""
     found: Bools | None = None
     for i in range(1 if may_be_interrupted(own, own.lanes[p]) else 2):
         for j in range(1 if may_be_interrupted(own, own.lanes[q]) else 2):
-            key = (2 * p + i, 2 * q + j) if p < q else (2 * q + j, 2 * p + i)
-            if key in own.parts:
-                found = own.parts[key] if found is None else found | own.parts[key]
+            pieces = pieces_met(own.parts, 2 * p + i, 2 * q + j)
+            if pieces is not None:
+                found = pieces if found is None else found | pieces
     return found
 
 
@@ -298,10 +298,9 @@ def _met(own: Repertoire, x: Lane, parts: tuple[int, ...], y: Lane, others: tupl
     steps = len(x.cuts) - 1
     found: Array = np.zeros((steps, steps), dtype=np.float32)
     for i, j in itertools.product(parts, others):
-        one, two = 2 * x.number + i, 2 * y.number + j
-        pieces = own.parts.get((min(one, two), max(one, two)))
+        pieces = pieces_met(own.parts, 2 * x.number + i, 2 * y.number + j)
         if pieces is not None:
-            found += pieces if one < two else pieces.T
+            found += pieces
     return found
 
 

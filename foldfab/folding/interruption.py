@@ -23,7 +23,7 @@ from foldfab.folding.graph import Graph
 from foldfab.folding.lanes import Lane
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import unhindered
-from foldfab.folding.repertoire import Place, Repertoire, Stretch, interrupt, stretches
+from foldfab.folding.repertoire import Place, Repertoire, Stretch, interrupt, pieces_met, stretches
 
 WORTH = 2e-3
 """By how much a choice must be cheaper to be worth the lanes that it takes."""
@@ -71,9 +71,8 @@ def _settle(
 def _are_hindered(own: Repertoire, chosen: Mapping[str, Place]) -> bool:
     """Whether anything of a choice meets, knuckles and feet included."""
     for (x, a), (y, b) in itertools.combinations(chosen.values(), 2):
-        one, two = sorted(((x.number, a), (y.number, b)))
-        pieces = own.pieces.get((one[0], two[0]))
-        if pieces is not None and pieces[slice(*one[1]), slice(*two[1])].any():
+        pieces = pieces_met(own.pieces, x.number, y.number)
+        if pieces is not None and pieces[slice(*a), slice(*b)].any():
             return True
     return False
 
@@ -90,7 +89,7 @@ def _agreeing(problem: Problem, own: Repertoire, chosen: Mapping[str, Place]) ->
         return {}
     tables = {}
     for g, h in itertools.combinations(range(len(loose)), 2):
-        if own.parts.get((min(hinges[g], hinges[h]), max(hinges[g], hinges[h]))) is not None:
+        if pieces_met(own.parts, hinges[g], hinges[h]) is not None:
             tables[g, h] = np.array([[_meet(own, hinges[g], s, hinges[h], t) for t in able[h]] for s in able[g]])
     costs = [np.array([float(s != chosen[p][1]) for s in own_able]) for p, own_able in zip(loose, able, strict=True)]
     best = cheaper(costs, tables, frozenset(), np.inf) or ()
@@ -107,10 +106,8 @@ def _able(problem: Problem, own: Repertoire, chosen: Mapping[str, Place], loose:
 
 def _meet(own: Repertoire, one: int, first: Stretch, two: int, second: Stretch) -> bool:
     """Whether two parts of lanes, told apart, meet within some pieces."""
-    table = own.parts.get((min(one, two), max(one, two)))
-    if table is None:
-        return False
-    return bool((table if one < two else table.T)[slice(*first), slice(*second)].any())
+    table = pieces_met(own.parts, one, two)
+    return table is not None and bool(table[slice(*first), slice(*second)].any())
 
 
 def _least(problem: Problem, own: Repertoire) -> float:

@@ -17,7 +17,7 @@ from foldfab.folding.model import Chain
 from foldfab.folding.ordering import after
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import blocked_pieces, in_the_way
-from foldfab.folding.repertoire import Repertoire, lane
+from foldfab.folding.repertoire import Repertoire, lane, pieces_met
 from foldfab.folding.scene import Scene, open_scene, shown
 from foldfab.folding.simulate import clashes
 from foldfab.folding.surroundings import Surroundings, look
@@ -85,10 +85,9 @@ def _with_room(
     for other, x in lanes.items():
         low, high = fold.chosen[other].window
         for part in range(2) if other != patch else ():
-            one, two = 2 * whole.number + 1, 2 * x.number + part
-            table = own.parts.get((min(one, two), max(one, two)))
+            table = pieces_met(own.parts, 2 * whole.number + 1, 2 * x.number + part)
             if table is not None:
-                hit = (table if one < two else table.T)[:, low:high].any(1)
+                hit = table[:, low:high].any(1)
                 taken |= hit
                 met |= {other} if hit.any() else set()
     return [s for s in range(len(taken)) if not taken[s]], met

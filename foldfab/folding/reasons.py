@@ -11,7 +11,7 @@ from foldfab.folding.conflict import meet_across
 from foldfab.folding.lanes import Lane
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import Prospects
-from foldfab.folding.repertoire import Repertoire
+from foldfab.folding.repertoire import Repertoire, pieces_met
 
 NAMED = 3
 """How many things a reason names."""
@@ -105,8 +105,8 @@ def _conflicting(own: Repertoire, lane: Lane, lanes: Mapping[str, Lane | None], 
     for patch, other in lanes.items():
         if other is None or patch == lane.patch:
             continue
-        table = own.pieces.get((min(lane.number, other.number), max(lane.number, other.number)))
-        if table is not None and np.asarray(table if lane.number < other.number else table.T)[list(pieces)].any():
+        table = pieces_met(own.pieces, lane.number, other.number)
+        if table is not None and table[list(pieces)].any():
             found.add(patch)
     return found
 

@@ -8,7 +8,7 @@ surroundings ask for them.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -80,6 +80,12 @@ class Repertoire:
     """By two lanes whose snaps differ, by what they depend on, whether they can be balanced."""
     reach: dict[str, tuple[Array, Array]] = field(default_factory=dict)
     """By base of the unit, lower and upper corner (3,) of all that the unit sweeps, as seen from that base."""
+
+
+def pieces_met(tables: Mapping[tuple[int, int], Bools], one: int, two: int) -> Bools | None:
+    """Which pieces of two numbers meet, those of the first one first, in what is kept by both, the smaller first."""
+    found = tables.get((min(one, two), max(one, two)))
+    return found if found is None or one < two else found.T
 
 
 def made_from_scratch(problem: Problem, unit: Unit) -> Repertoire:

@@ -1,7 +1,7 @@
 """A solution as the paper's own scaffold: patches without thickness (sections 4 and 5.3).
 
-The modifications alone decide: hinges stand at equal intervals (figure 9), windows are those that remain, units fold
-in the order of the steps. Within a unit a press comes down and takes each base with it as it gets there, so that
+The modifications and the widths that chains keep decide: hinges stand at equal intervals (figure 9), units fold in the
+order of the steps. Within a unit a press comes down and takes each base with it as it gets there, so that
 higher ones start first (figure 11a). A chain in place follows its bases exactly; where it leans at first it is one
 long panel against the others, which turn in line until they stand upright and in a zig-zag from there.
 

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from math import fsum
 
 import numpy as np
 
@@ -56,15 +57,18 @@ def optimal(
     is_whole = set(folds) == set(floor)
     groups = neighbouring(problem, scene) if is_whole else [set(floor)]
     order = [f.unit.name for f in known.folds] if known else sorted(floor)
+    # Exact sums, here and below: groups are sets, whose order differs from run to run.
     best = (
-        [sum(folds[n].weight for n in names) for names in groups] if is_whole else [_weight(known) if known else np.inf]
+        [fsum(folds[n].weight for n in names) for names in groups]
+        if is_whole
+        else [_weight(known) if known else np.inf]
     )
     settled = [_is_settled(names, b, floor, folds if is_whole else {}) for names, b in zip(groups, best, strict=True)]
-    bound = float(sum(b for b, done in zip(best, settled, strict=True) if done))
+    bound = fsum(b for b, done in zip(best, settled, strict=True) if done)
     left = [(names, b) for names, b, done in zip(groups, best, settled, strict=True) if not done]
-    rest_counts = bound + sum(floor[n] for names, _ in left for n in names)
+    rest_counts = bound + fsum(floor[n] for names, _ in left for n in names)
     for k, (names, least) in enumerate(left):
-        least = min(least, limit - rest_counts + sum(floor[n] for n in names))
+        least = min(least, limit - rest_counts + fsum(floor[n] for n in names))
         others = [folds[n] for n in order if n not in names] if is_whole else []
         group = _group(problem, scene, others, {n: floor[n] for n in names}, least)
         found, group_bound = _solved(group, problem.work.left / (len(left) - k))
@@ -82,21 +86,18 @@ def lower_bound(problem: Problem, scene: Scene, known: Ordered, floor: Mapping[s
     """What any order counts at least: a unit that has to do with no other one cannot do better than it does."""
     folds = {f.unit.name: f for f in known.folds}
     if set(folds) != set(floor):
-        return float(sum(floor.values()))
+        return fsum(floor.values())
     groups = neighbouring(problem, scene)
-    best = [sum(folds[n].weight for n in names) for names in groups]
-    return float(
-        sum(
-            b if _is_settled(g, b, floor, folds) else sum(floor[n] for n in g)
-            for g, b in zip(groups, best, strict=True)
-        )
+    best = [fsum(folds[n].weight for n in names) for names in groups]
+    return fsum(
+        b if _is_settled(g, b, floor, folds) else fsum(floor[n] for n in g) for g, b in zip(groups, best, strict=True)
     )
 
 
 def _is_settled(names: set[str], best: float, floor: Mapping[str, float], folds: Mapping[str, UnitFold]) -> bool:
     """Whether nothing can be cheaper than the best known of a group; `folds` are those of all units, if there are."""
     is_single = len(names) == 1 and all(n in folds and folds[n].gap <= NO_MORE for n in names)
-    return is_single or best - sum(floor[n] for n in names) <= NO_MORE
+    return is_single or best - fsum(floor[n] for n in names) <= NO_MORE
 
 
 def other(
@@ -110,11 +111,11 @@ def other(
 
 
 def _weight(known: Ordered) -> float:
-    return sum(f.weight for f in known.folds)
+    return fsum(f.weight for f in known.folds)
 
 
 def _group(problem: Problem, scene: Scene, others: list[UnitFold], floor: dict[str, float], known: float) -> Group:
-    spare = known - sum(floor.values())
+    spare = known - fsum(floor.values())
     for fold in others:
         scene = after(problem, scene, fold)
     units = tuple(u for u in problem.units if u.name in floor)

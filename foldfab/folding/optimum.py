@@ -57,12 +57,7 @@ def optimal(
     is_whole = set(folds) == set(floor)
     groups = neighbouring(problem, scene) if is_whole else [set(floor)]
     order = [f.unit.name for f in known.folds] if known else sorted(floor)
-    # Exact sums, here and below: groups are sets, whose order differs from run to run.
-    best = (
-        [fsum(folds[n].weight for n in names) for names in groups]
-        if is_whole
-        else [_weight(known) if known else np.inf]
-    )
+    best = _best(groups, folds) if is_whole else [_weight(known) if known else np.inf]
     settled = [_is_settled(names, b, floor, folds if is_whole else {}) for names, b in zip(groups, best, strict=True)]
     bound = fsum(b for b, done in zip(best, settled, strict=True) if done)
     left = [(names, b) for names, b, done in zip(groups, best, settled, strict=True) if not done]
@@ -88,10 +83,15 @@ def lower_bound(problem: Problem, scene: Scene, known: Ordered, floor: Mapping[s
     if set(folds) != set(floor):
         return fsum(floor.values())
     groups = neighbouring(problem, scene)
-    best = [fsum(folds[n].weight for n in names) for names in groups]
+    best = _best(groups, folds)
     return fsum(
         b if _is_settled(g, b, floor, folds) else fsum(floor[n] for n in g) for g, b in zip(groups, best, strict=True)
     )
+
+
+def _best(groups: list[set[str]], folds: Mapping[str, UnitFold]) -> list[float]:
+    """What the known folds of each group count; sums are exact, as the order of a set differs from run to run."""
+    return [fsum(folds[n].weight for n in names) for names in groups]
 
 
 def _is_settled(names: set[str], best: float, floor: Mapping[str, float], folds: Mapping[str, UnitFold]) -> bool:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from foldfab.errors import AbstractionError
 from foldfab.geometry.arrays import Array
 from foldfab.geometry.groups import Groups
-from foldfab.recipe.model import Recipe
+from foldfab.recipe.model import Part, PrintOptions, Recipe
 from foldfab.scaffold import segments as seg
 from foldfab.scaffold.bases import Layout, find_bases
 from foldfab.scaffold.contacts import Contacts, contacts_of, listed, require_connected
@@ -60,8 +60,15 @@ def abstract(recipe: Recipe, direction: Array, scale: float) -> Scaffold:
     _require_attached(_loose(parts, layout, patches))
     _require_one_piece(patches, layout.bases)
     notes = (*told, *notes, *_tilted(parts, thickness))
-    bases = tuple(replace(b, thickness=_thickest(recipe, b.parts, scale, is_base=True)) for b in layout.bases)
-    patches = tuple(replace(p, thickness=_thickest(recipe, p.parts, scale, is_base=False)) for p in patches)
+    named = {part.name: part for part in recipe.parts}
+    bases = tuple(
+        replace(base, thickness=_thickest([named[n] for n in base.parts], recipe.print, scale, is_base=True))
+        for base in layout.bases
+    )
+    patches = tuple(
+        replace(patch, thickness=_thickest([named[n] for n in patch.parts], recipe.print, scale, is_base=False))
+        for patch in patches
+    )
     return Scaffold(recipe, direction, canonical(recipe, direction), scale, bases, patches, notes)
 
 
@@ -72,11 +79,9 @@ def check_connected(recipe: Recipe) -> None:
     require_connected(parts, contacts, 1.0)
 
 
-def _thickest(recipe: Recipe, names: tuple[str, ...], scale: float, *, is_base: bool) -> float | None:
+def _thickest(own: list[Part], options: PrintOptions, scale: float, *, is_base: bool) -> float | None:
     """K of a plate or panel that stands for some parts: that of the thickest; None where it is the print's."""
-    options = recipe.print
     role = options.base_thickness if is_base else None
-    own = [p for p in recipe.parts if p.name in set(names)]
     asked = [p.thickness for p in own if p.thickness is not None]
     if options.own_thickness:
         least = role or options.thickness

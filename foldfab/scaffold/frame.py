@@ -73,17 +73,26 @@ def _along(axes: Array, size: Array) -> Array:
     level = np.abs(axes[:, :, 2]) < LEVEL
     if not level.any():
         return np.eye(2)
-    area = (size.prod(1)[:, None] / size)[level]
-    # Four times the angle is the same for both lines of a cross, either way along each.
-    angle = 4 * np.arctan2(axes[level][:, 1], axes[level][:, 0])
-    apart = np.abs(np.angle(np.exp(1j * (angle[:, None] - angle))))
-    votes = (apart < 4 * ONE_LINE) @ area
+    votes = _votes(axes[level][:, :2], (size.prod(1)[:, None] / size)[level])
     first = int(np.argmax(votes > votes.max() * (1 - SAME)))
     x, y = axes[level][first][:2]
     if min(abs(x), abs(y)) < SAME:
         return np.eye(2)
     x, y = np.array([x, y]) / np.hypot(x, y)
     return np.array([[x, y], [-y, x]])
+
+
+def _votes(lines: Array, area: Array) -> Array:
+    """(n,) the area (n,) that faces each of some lines (n, 2) in the plane or goes across it, both within `ONE_LINE`."""
+    # Four times the angle is the same for both lines of a cross, either way along each.
+    angle = 4 * np.arctan2(lines[:, 1], lines[:, 0]) % (2 * np.pi)
+    order = np.argsort(angle)
+    turns = np.concatenate([angle[order] + around for around in (-2 * np.pi, 0.0, 2 * np.pi)])
+    below = np.concatenate([[0.0], np.cumsum(np.tile(area[order], 3))])
+    near = (np.searchsorted(turns, angle + side * 4 * ONE_LINE) for side in (1, -1))
+    upper, lower = (below[i] for i in near)
+    votes: Array = upper - lower
+    return votes
 
 
 def _quarter(center: Array, reach: Array) -> Array:

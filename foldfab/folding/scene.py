@@ -16,7 +16,7 @@ from foldfab.folding import anatomy
 from foldfab.folding.basic import Option
 from foldfab.folding.model import Chain
 from foldfab.folding.problem import Problem
-from foldfab.folding.site import plate_boxes, slab
+from foldfab.folding.site import Site, plate_boxes, slab
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Array, Indices
 from foldfab.geometry.boxes import Boxes, bounds
@@ -82,9 +82,12 @@ class Scene:
 def open_scene(problem: Problem) -> Scene:
     """The furniture before the first step."""
     number = problem.tree.number
-    sites = [problem.sites[patch] for unit in problem.units for patch in unit.patches]
+    beside: dict[str | None, list[Site]] = {base.name: [] for base in problem.scaffold.bases}
+    for site in (problem.sites[patch] for unit in problem.units for patch in unit.patches):
+        for name in {site.anchor, site.far} & set(beside):
+            beside[name].append(site)
     solids = [
-        _solid(base.name, "base", number[base.name], plate_boxes(base, sites, problem.thickness))
+        _solid(base.name, "base", number[base.name], plate_boxes(base, beside[base.name], problem.thickness))
         for base in problem.scaffold.bases
     ]
     places = {}

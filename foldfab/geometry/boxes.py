@@ -17,7 +17,7 @@ from foldfab.geometry.arrays import Array, Bools, Indices
 PARALLEL = 1e-9
 """Added to projected radii so that nearly parallel edges make no false separating axis."""
 
-DENSE = 2**18
+DENSE = 2**14
 """Up to this many pairs all bounds are compared at once; halving space would only cost time."""
 FEW = 2**12
 """Space is not halved further where this many pairs are left."""
@@ -126,10 +126,13 @@ def near_pairs(a: tuple[Array, Array], b: tuple[Array, Array]) -> tuple[Indices,
 
 def _meeting(a: tuple[Array, Array], b: tuple[Array, Array]) -> Bools:
     """Whether each of the bounds (n) overlaps each of the others (m): (n, m)."""
-    near = np.ones((len(a[0]), len(b[0])), dtype=bool)
-    for k in range(3):
-        near &= a[0][:, None, k] <= b[1][None, :, k]
-        near &= b[0][None, :, k] <= a[1][:, None, k]
+    # Row by row of one axis: numbers that lie side by side compare in half the time.
+    low_a, high_a, low_b, high_b = (np.ascontiguousarray(corner.T) for corner in (*a, *b))
+    near: Bools = low_a[0][:, None] <= high_b[0]
+    near &= high_a[0][:, None] >= low_b[0]
+    for k in (1, 2):
+        near &= low_a[k][:, None] <= high_b[k]
+        near &= high_a[k][:, None] >= low_b[k]
     return near
 
 

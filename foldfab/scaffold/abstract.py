@@ -8,7 +8,7 @@ from dataclasses import replace
 from foldfab.errors import AbstractionError
 from foldfab.geometry.arrays import Array
 from foldfab.geometry.groups import Groups
-from foldfab.recipe.model import Part, PrintOptions, Recipe
+from foldfab.recipe.model import Recipe
 from foldfab.scaffold import segments as seg
 from foldfab.scaffold.bases import Layout, find_bases
 from foldfab.scaffold.contacts import Contacts, contacts_of, listed, require_connected
@@ -60,15 +60,9 @@ def abstract(recipe: Recipe, direction: Array, scale: float) -> Scaffold:
     _require_attached(_loose(parts, layout, patches))
     _require_one_piece(patches, layout.bases)
     notes = (*told, *notes, *_tilted(parts, thickness))
-    named = {part.name: part for part in recipe.parts}
-    bases = tuple(
-        replace(base, thickness=_thickest([named[n] for n in base.parts], recipe.print, scale, is_base=True))
-        for base in layout.bases
-    )
-    patches = tuple(
-        replace(patch, thickness=_thickest([named[n] for n in patch.parts], recipe.print, scale, is_base=False))
-        for patch in patches
-    )
+    plates, panels = (_asked(recipe, scale, role) for role in (recipe.print.base_thickness, None))
+    bases = tuple(replace(b, thickness=_thickest(plates, b.parts, recipe.print.base_thickness)) for b in layout.bases)
+    patches = tuple(replace(p, thickness=_thickest(panels, p.parts, None)) for p in patches)
     return Scaffold(recipe, direction, canonical(recipe, direction), scale, bases, patches, notes)
 
 
@@ -79,14 +73,19 @@ def check_connected(recipe: Recipe) -> None:
     require_connected(parts, contacts, 1.0)
 
 
-def _thickest(own: list[Part], options: PrintOptions, scale: float, *, is_base: bool) -> float | None:
+def _asked(recipe: Recipe, scale: float, role: float | None) -> dict[str, float]:
+    """By part that has one of its own, its thickness in print; what is the furniture's own is no less than its role's."""
+    asked = {part.name: part.thickness for part in recipe.parts if part.thickness is not None}
+    if not recipe.print.own_thickness:
+        return asked
+    least = role or recipe.print.thickness
+    own = {part.name: round(min(scale * float(part.size.min()), MOST_OWN), 2) for part in recipe.parts}
+    return {name: max(least, thick) for name, thick in own.items()} | asked
+
+
+def _thickest(asked: dict[str, float], names: tuple[str, ...], role: float | None) -> float | None:
     """K of a plate or panel that stands for some parts: that of the thickest; None where it is the print's."""
-    role = options.base_thickness if is_base else None
-    asked = [p.thickness for p in own if p.thickness is not None]
-    if options.own_thickness:
-        least = role or options.thickness
-        asked += [max(least, round(min(scale * float(p.size.min()), MOST_OWN), 2)) for p in own if p.thickness is None]
-    return max(asked) if asked else role
+    return max((asked[name] for name in names if name in asked), default=role)
 
 
 def _laid_out(

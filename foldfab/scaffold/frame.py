@@ -83,7 +83,7 @@ def _along(axes: Array, size: Array) -> Array:
 
 
 def _votes(lines: Array, area: Array) -> Array:
-    """(n,) the area (n,) that faces each of some lines (n, 2) in the plane or goes across it, both within `ONE_LINE`."""
+    """(n,) of the area (n,) that faces lines (n, 2), what faces each or goes across it, both within `ONE_LINE`."""
     # Four times the angle is the same for both lines of a cross, either way along each.
     angle = 4 * np.arctan2(lines[:, 1], lines[:, 0]) % (2 * np.pi)
     order = np.argsort(angle)

@@ -105,3 +105,12 @@ def test_of_the_lines_that_sides_face_that_of_the_smallest_outline_is_taken(box:
     legs = tuple(box(f"leg{k}", (0, 0, 340), (18, 600, 680), about_z(45 + 90 * k).T) for k in range(2))
     assert np.array_equal(straight(recipe((top, *legs))), np.eye(3))
     assert straight(turned(recipe((top, *legs)), about_z(20))) == pytest.approx(about_z(-20), abs=1e-9)
+
+
+@pytest.mark.parametrize("line", [0.0, 22.5, 45.0, 90.0, 137.0])
+def test_sides_within_half_a_degree_of_a_line_face_it_together(line: float, box: Box, recipe: Make) -> None:
+    """Two walls a little to either side of a line outvote a larger one that faces elsewhere."""
+    walls = [box(f"near{k}", (0, 0, 100 * k), (18, 400, 400), about_z(line + 0.4 * k - 0.2).T) for k in range(2)]
+    other = box("other", (0, 0, 300), (18, 400, 600), about_z(line + 30).T)
+    found = canonical(recipe((*walls, other)), DOWN) @ about_z(line)[:, 0]
+    assert np.abs(found).max() > np.cos(np.radians(0.3))

@@ -74,7 +74,7 @@ def check_connected(recipe: Recipe) -> None:
 
 
 def _asked(recipe: Recipe, scale: float, role: float | None) -> dict[str, float]:
-    """By part that has one of its own, its thickness in print; what is the furniture's own is no less than its role's."""
+    """By part that has one of its own, its thickness in print; no furniture's own is less than its role's."""
     asked = {part.name: part.thickness for part in recipe.parts if part.thickness is not None}
     if not recipe.print.own_thickness:
         return asked

@@ -23,7 +23,7 @@ import numpy as np
 
 from foldfab.fabrication import levers
 from foldfab.fabrication.hinges import Mark
-from foldfab.fabrication.levers import AIM, CLOSE, NEAR
+from foldfab.fabrication.levers import AIM, CLOSE, LEAST, NEAR
 from foldfab.fabrication.mounts import WIDEST, Stop, mount, names, spots
 from foldfab.fabrication.shapes import Shape, box, placed
 from foldfab.folding.mechanism import frames, joints, tilts
@@ -78,15 +78,28 @@ def _laps(chain: Chain, hinge: int, thickness: Thickness, name: str) -> Iterator
     origin, axes = _straight(chain, hinge)
     # The longer panel gets the recess; then the other one is tried.
     for above in sorted((True, False), key=lambda above: -_free(chain, hinge, above, thickness)):
-        z = -1.0 if above else 1.0
-        reach = min(close / np.sin(AIM), _free(chain, hinge, above, thickness))
-        tongue = _spread(back * close / 2, back * half, -z * WEB, z * reach)
-        recess = _spread(-back * close / 2, back * (half + 1.0), 0.0, z * (reach + gap))
         below, over = chain.panels[hinge - 1], chain.panels[hinge]
         body, other = (over, below) if above else (below, over)
-        for low, high in spots((float(chain.span[0]), float(chain.span[1])), WIDEST, chain.breaks):
-            added, hole = _slab(tongue, low, high), _slab(recess, low - gap, high + gap)
-            yield Stop(name, "lap", False, body, placed(added, origin, axes), other, cut=placed(hole, origin, axes))
+        z = -1.0 if above else 1.0
+        for reach, end in _reaches(chain, hinge, above, thickness):
+            tongue = _spread(back * close / 2, back * half, -z * WEB, z * reach)
+            recess = _spread(-back * close / 2, back * (half + 1.0), 0.0, z * end)
+            for low, high in spots((float(chain.span[0]), float(chain.span[1])), WIDEST, chain.breaks):
+                added, hole = _slab(tongue, low, high), _slab(recess, low - gap, high + gap)
+                yield Stop(name, "lap", False, body, placed(added, origin, axes), other, cut=placed(hole, origin, axes))
+
+
+def _reaches(chain: Chain, hinge: int, above: bool, thickness: Thickness) -> Iterator[Mark]:
+    """How far a lap may reach into the other panel, and where its recess ends, mm from the hinge.
+
+    A panel that is too short for a wall beyond the recess has it right through to the knuckles of its other hinge.
+    """
+    least, wanted = (CLOSE * thickness.gap / float(np.sin(angle)) for angle in (LEAST, AIM))
+    free = _free(chain, hinge, above, thickness)
+    end = float(chain.lengths[hinge - 1 if above else hinge]) - thickness.panel / 2
+    if free < min(least, end - thickness.gap):
+        yield min(wanted, end - thickness.gap), end
+    yield min(wanted, free), min(wanted, free) + thickness.gap
 
 
 def _butts(chain: Chain, hinge: int, thickness: Thickness, name: str) -> Iterator[Stop]:

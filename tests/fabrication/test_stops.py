@@ -81,6 +81,19 @@ def test_a_slot_close_to_the_edge_of_its_base_is_opened_there(
     assert all(thin_sides(body) == 0 for body in as_solids(made).values())
 
 
+@pytest.mark.parametrize("height", [22.0, 24.0])
+def test_a_lap_goes_right_through_a_panel_that_is_too_short_for_a_wall_beyond_it(
+    height: float, solution: Callable[..., FoldSolution], board_at: Callable[..., Part], wall_at: Callable[..., Part]
+) -> None:
+    boards = board_at("bottom", 0), board_at("top", height + 4)
+    found = solution((*boards, wall_at("wall", 0, 0, height + 4)), slanting=False)
+    assembly = build(found, "open")
+    (joint,) = [j for j in assembly.joints if j.is_inserted]
+    assert joint.stops == ("lap",)
+    assert joint.stop_deg[0] is not None and joint.stop_deg[0] <= PAST
+    assert all(thin_sides(body) == 0 for body in as_solids(assembly).values())
+
+
 def test_a_rest_on_edge_has_a_ramp_below_it(assembled: Callable[..., Assembly]) -> None:
     assembly = assembled("shelter", "edge")
     assert assembly.up is not None

@@ -264,6 +264,12 @@ def may_be_interrupted(own: Repertoire, x: Lane) -> bool:
     return x.variant.hinged == WHOLE and x.number not in own.interrupted
 
 
+def are_in_the_way(own: Repertoire) -> bool:
+    """Whether any two lanes meet where only hinges do that may still be interrupted."""
+    bare = ((pieces, _panels_met(own, p, q)) for (p, q), pieces in own.pieces.items())
+    return any(panels is None or bool((pieces & ~panels).any()) for pieces, panels in bare)
+
+
 def _panels_met(own: Repertoire, p: int, q: int) -> Bools | None:
     """Which pieces of two lanes meet without what may still be interrupted, those of the first one first."""
     found: Bools | None = None

@@ -18,7 +18,7 @@ import numpy as np
 
 from foldfab.folding.basic import WHOLE
 from foldfab.folding.choose import cheaper
-from foldfab.folding.conflict import may_be_interrupted
+from foldfab.folding.conflict import are_in_the_way, may_be_interrupted
 from foldfab.folding.graph import Graph
 from foldfab.folding.lanes import Lane
 from foldfab.folding.problem import Problem
@@ -34,7 +34,7 @@ ROUNDS = 4
 def interrupted(problem: Problem, own: Repertoire, graph: Graph, picked: tuple[int, ...] | None) -> bool:
     """Adds the lanes by which a unit has a cheaper choice than was picked from its graph; whether there are any."""
     weight = graph.weight(picked) if picked is not None else np.inf
-    if graph.modes or weight <= _least(problem, own) + WORTH:
+    if graph.modes or weight <= _least(problem, own) + WORTH or not are_in_the_way(own):
         return False
     before = dict(own.plain)
     for _ in range(ROUNDS):

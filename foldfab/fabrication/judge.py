@@ -98,7 +98,7 @@ class Judge:
         return not any(hits_foot) and not any(solids.overlap(hole, solid) > CLASH for solid in others)
 
     def is_thinner(self, name: str, solid: Solid, before: Solid, near: Box | None = None) -> bool:
-        """Whether more of a body than before is walls thinner than a line, its ramps cut; `near` a box alone."""
+        """Whether more of a body than before is walls thinner than a line, its ramps cut; what reaches `near` alone."""
         now, then = (thin_sides(solids.cut(one, self._ramps.get(name, [])), near) for one in (solid, before))
         return now > then
 

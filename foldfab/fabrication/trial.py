@@ -6,7 +6,8 @@ that stops in time, or is held, does so afterwards. What costs least is asked fi
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+import functools
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -51,8 +52,8 @@ class Latched:
     """What a pin that holds a hinge makes of its base, beside the stop that has the tongue."""
 
     base: Solid
-    needs_seats: bool
-    """Whether the base has to be given the seats of the pin."""
+    changes: tuple[Change, ...]
+    """Those of the base: its seats, where it lacks them, and its groove."""
     latch: Latch
 
 
@@ -130,14 +131,8 @@ class Trial:
 
     def take(self, fitted: Fitted) -> None:
         """Makes a stop."""
-        stop = fitted.stop
-        self._change(stop.body, Change(True, stop.added))
-        if stop.lip is not None:
-            self._change(stop.other, Change(True, stop.lip))
-        if stop.cut is not None:
-            self._change(stop.other, Change(False, stop.cut))
-        for name, hole in fitted.pockets.items():
-            self._change(name, Change(False, hole))
+        for name, change in _changes(fitted.stop, fitted.pockets):
+            self._change(name, change)
         for name, solid in fitted.changed.items():
             self._make(name, solid)
 
@@ -156,13 +151,11 @@ class Trial:
         held, made = stop.lock, {**self.made, **fitted.changed}
         if held is None:
             return None
-        base = made[stop.other]
-        needs_seats = not is_seated(base, held)
-        if needs_seats:
-            if not self._has_room_for(stop.other, held.seats, made):
-                return None
-            base = solids.union([base, printed(held.seats)])
-        base = solids.tidied(solids.cut(base, [printed(held.groove)]))
+        seats = () if is_seated(made[stop.other], held) else (Change(True, held.seats),)
+        if seats and not self._has_room_for(stop.other, held.seats, made):
+            return None
+        changes = (*seats, Change(False, held.groove))
+        base = solids.tidied(functools.reduce(_applied, changes, made[stop.other]))
         if flaw(base) or self._unstopped(stop.other, base):
             return None
         if self.judge.is_thinner(stop.other, base, fitted.changed.get(stop.other, base)):
@@ -173,14 +166,13 @@ class Trial:
             return None
         (start, end), into = held.ends.tolist(), held.into.tolist()
         latch = Latch(stop.other, (tuple(start), tuple(end)), tuple(into), angle, held.moment)
-        return Latched(base, needs_seats, latch)
+        return Latched(base, changes, latch)
 
     def lock(self, stop: Stop, made: Latched) -> None:
         """Makes the latch of a stop that is made."""
         assert stop.lock is not None
-        if made.needs_seats:
-            self._change(stop.other, Change(True, stop.lock.seats))
-        self._change(stop.other, Change(False, stop.lock.groove))
+        for change in made.changes:
+            self._change(stop.other, change)
         self._make(stop.other, made.base)
         self.locks[stop.joint] = stop.lock
 
@@ -194,12 +186,10 @@ class Trial:
 
     def _with(self, stop: Stop, pockets: Mapping[str, Shape]) -> dict[str, Solid]:
         """The bodies that a stop changes, with it."""
-        body = solids.union([self.made[stop.body], printed(stop.added)])
-        other = self.made[stop.other]
-        other = other if stop.lip is None else solids.union([other, printed(stop.lip)])
-        other = other if stop.cut is None else solids.cut(other, [printed(stop.cut)])
-        bored = {name: solids.cut(self.made[name], [printed(hole)]) for name, hole in pockets.items()}
-        return {name: solids.tidied(solid) for name, solid in {stop.body: body, stop.other: other, **bored}.items()}
+        found = {name: self.made[name] for name in (stop.body, stop.other, *pockets)}
+        for name, change in _changes(stop, pockets):
+            found[name] = _applied(found[name], change)
+        return {name: solids.tidied(solid) for name, solid in found.items()}
 
     def _has_room_for(self, name: str, piece: Shape, made: Mapping[str, Solid], holes: Sequence[Solid] = ()) -> bool:
         """Whether a piece adds to a body, and there is room for what of it is not cut away again."""
@@ -264,3 +254,19 @@ class Trial:
         made = {**self.made, **changed}
         first, second = self._parts[joint]
         return made[first], made[second]
+
+
+def _changes(stop: Stop, pockets: Mapping[str, Shape]) -> Iterator[tuple[str, Change]]:
+    """All that a stop and its pockets make of bodies, by their names."""
+    yield stop.body, Change(True, stop.added)
+    if stop.lip is not None:
+        yield stop.other, Change(True, stop.lip)
+    if stop.cut is not None:
+        yield stop.other, Change(False, stop.cut)
+    for name, hole in pockets.items():
+        yield name, Change(False, hole)
+
+
+def _applied(solid: Solid, change: Change) -> Solid:
+    piece = printed(change.shape)
+    return solids.union([solid, piece]) if change.is_added else solids.cut(solid, [piece])

@@ -142,7 +142,7 @@ def test_a_pin_is_seated_where_all_around_its_groove_is_of_the_base() -> None:
     base, groove = solids.box(low - 1, high + 1), printed(made.groove)
     assert is_seated(base, made)
     assert is_seated(solids.cut(base, [groove]), made)
-    assert not is_seated(solids.box(low + [0.1, 0, 0], high + 1), made)
+    assert not is_seated(solids.box(low + 0.1, high + 1), made)
     assert not is_seated(solids.cut(base, [groove, solids.box(high - 0.5, high + 2)]), made)
 
 

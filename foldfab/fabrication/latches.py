@@ -170,6 +170,11 @@ def is_free(bodies: Iterable[Solid], made: Lock) -> bool:
     return all(solids.overlap(solid, piece) <= MEETS for solid in bodies for piece in (pin, way))
 
 
+def is_seated(base: Solid, made: Lock) -> bool:
+    """Whether a base, its groove cut or not, has all that a pin is to lie in."""
+    return float(solids.cut(printed(made.seats), [base, printed(made.groove)]).volume()) <= MEETS
+
+
 def _meets(range_: Turn, panel: Solid, pin: Solid, angle: float, is_base_first: bool) -> bool:
     first, second = (pin, panel) if is_base_first else (panel, pin)
     return solids.overlap(first, solids.moved(second, range_.past(-angle, is_folded=False))) > MEETS

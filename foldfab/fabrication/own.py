@@ -55,7 +55,9 @@ def own_shapes(draft: Assembly, held: Stopped, ramps: Mapping[str, list[Shape]])
         findings.append(
             Finding("own", f"folded it is {higher:.1f} mm higher than with plain plates, by its own shapes")
         )
-    return replace(held, made=trial.made, shapes=trial.shapes, joints=reached(trial, held.joints)), findings
+    return replace(
+        held, made=trial.made, shapes=trial.shapes, joints=reached(held.joints, trial.turns, trial.made)
+    ), findings
 
 
 def _dressed(trial: Trial, place: Place, plain: Shape, changes: list[Change]) -> list[Finding]:
@@ -102,7 +104,7 @@ def _recesses(trial: Trial, place: Place) -> list[Shape]:
 def _motion(trial: Trial, place: Place, name: str) -> Motion:
     into = np.eye(4)
     into[:3, :3], into[:3, 3] = place.plane.across, -place.plane.across @ place.plane.origin
-    poses = into @ np.linalg.inv(trial.poses[place.name]) @ trial.poses[name]
+    poses = into @ np.linalg.inv(trial.judge.poses[place.name]) @ trial.judge.poses[name]
     return Motion(trial.made[name], poses)
 
 

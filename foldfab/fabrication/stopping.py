@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
+from foldfab.fabrication.inspect import instants
 from foldfab.fabrication.latches import Lock
 from foldfab.fabrication.model import Assembly, Joint, Latch
 from foldfab.fabrication.mounts import Stop
@@ -12,6 +13,8 @@ from foldfab.fabrication.shapes import Shape
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.stops import bolts, rests, stops
 from foldfab.fabrication.trial import Change, Fitted, Trial
+from foldfab.fabrication.turning import Turn, stops_at, turns
+from foldfab.folding.kinematics import configuration
 from foldfab.folding.model import Chain
 
 
@@ -52,7 +55,10 @@ def stopped(assembly: Assembly, made: dict[str, Solid], ramps: Mapping[str, list
                 taken[name] = (*taken[name], best.stop.kind)
                 made_stops |= {} if is_folded else {name: best}
     latches = _latches(assembly, trial, made_stops)
-    joints = tuple(replace(j, stops=taken[j.name], latch=latches.get(j.name)) for j in reached(trial, assembly.joints))
+    joints = tuple(
+        replace(j, stops=taken[j.name], latch=latches.get(j.name))
+        for j in reached(assembly.joints, trial.turns, trial.made)
+    )
     return Stopped(trial.made, trial.shapes, joints, trial.locks, trial.changes)
 
 
@@ -84,12 +90,13 @@ def _latches(assembly: Assembly, trial: Trial, made: Mapping[str, Fitted]) -> di
 
 def measured(assembly: Assembly, made: dict[str, Solid]) -> tuple[Joint, ...]:
     """The joints with what each reaches on bodies that were changed after they got their stops."""
-    return reached(Trial(assembly, made), assembly.joints)
+    poses = configuration(assembly.solution, instants(assembly))
+    return reached(assembly.joints, turns(assembly.joints, poses), made)
 
 
-def reached(trial: Trial, joints: tuple[Joint, ...]) -> tuple[Joint, ...]:
-    """The joints with how far past their ends they turn."""
-    return tuple(replace(j, stop_deg=_angles(trial, j.name)) for j in joints)
+def reached(joints: tuple[Joint, ...], ranges: Mapping[str, Turn], made: Mapping[str, Solid]) -> tuple[Joint, ...]:
+    """The joints with how far past the ends of their ranges they turn."""
+    return tuple(replace(j, stop_deg=_angles(ranges[j.name], *(made[part] for part in j.parts))) for j in joints)
 
 
 def _hinges(assembly: Assembly) -> Iterator[tuple[Chain, int, str]]:
@@ -115,5 +122,5 @@ def _best(trial: Trial, joint: str, candidates: Iterable[Stop], is_folded: bool)
     return trial.soonest(late)
 
 
-def _angles(trial: Trial, joint: str) -> tuple[float | None, float | None]:
-    return trial.angle(joint, is_folded=False), trial.angle(joint, is_folded=True)
+def _angles(range_: Turn, first: Solid, second: Solid) -> tuple[float | None, float | None]:
+    return stops_at(range_, first, second, is_folded=False), stops_at(range_, first, second, is_folded=True)

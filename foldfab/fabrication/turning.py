@@ -5,6 +5,7 @@ Both halves are taken alone, as if they were all there is: what stops them is pa
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -47,6 +48,11 @@ def turn(joint: Joint, first: Array, second: Array) -> Turn:
     if turn_sign(relative, axis) < 0:
         angles, axis = -angles, axis[::-1]
     return Turn(relative[int(angles.argmin())], relative[int(angles.argmax())], axis)
+
+
+def turns(joints: Iterable[Joint], poses: Mapping[str, Array]) -> dict[str, Turn]:
+    """The ranges of hinges, by name, from the poses (k, 4, 4) of all bodies over a whole fold."""
+    return {joint.name: turn(joint, *(poses[part] for part in joint.parts)) for joint in joints}
 
 
 def turn_sign(relative: Array, axis: Array) -> float:

@@ -24,6 +24,7 @@ from foldfab.fabrication.latches import (
     Tongue,
     held_at,
     is_free,
+    is_seated,
     lock,
     moment,
 )
@@ -132,6 +133,17 @@ def test_a_groove_leaves_half_the_clearance_or_a_tenth(gap: float) -> None:
 )
 def test_no_lock_is_made_without_room(tongue: Tongue, depth: float, plate: float) -> None:
     assert lock(tongue, depth, plate, 0.3) is None
+
+
+def test_a_pin_is_seated_where_all_around_its_groove_is_of_the_base() -> None:
+    made = lock(UPRIGHT, 6.3, 4.0, 0.3)
+    assert made is not None
+    low, high = solids.bounds(printed(made.seats))
+    base, groove = solids.box(low - 1, high + 1), printed(made.groove)
+    assert is_seated(base, made)
+    assert is_seated(solids.cut(base, [groove]), made)
+    assert not is_seated(solids.box(low + 0.1, high + 1), made)
+    assert not is_seated(solids.cut(base, [groove, solids.box(high - 0.5, high + 2)]), made)
 
 
 def test_a_pin_goes_deeper_where_its_tongue_leans_back() -> None:

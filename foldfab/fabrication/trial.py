@@ -158,7 +158,7 @@ class Trial:
         base = solids.tidied(functools.reduce(_applied, changes, made[stop.other]))
         if flaw(base) or self._unstopped(stop.other, base):
             return None
-        if self.judge.is_thinner(stop.other, base, fitted.changed.get(stop.other, base)):
+        if self.judge.is_thinner(stop.other, base, made[stop.other]):
             return None
         made[stop.other] = base
         angle = self._play(stop.joint, held, made)

@@ -18,6 +18,7 @@ from foldfab.folding.press import Motion
 from foldfab.folding.problem import Problem, clear_height, levels
 from foldfab.folding.prospects import PAD_SHARE
 from foldfab.folding.scene import Scene
+from foldfab.folding.sheets import crossings
 from foldfab.folding.simulate import clashes
 from foldfab.folding.surroundings import Surroundings
 from foldfab.folding.units import Unit
@@ -43,6 +44,8 @@ class Clash:
     """What else does not work, for other reasons."""
     is_unlike: bool = False
     """Whether chains fold to heights, or snap by amounts, that could not be balanced."""
+    crosses: bool = False
+    """Whether it is free with thickness but not without."""
 
 
 def realised(
@@ -114,6 +117,10 @@ def _played(
         also = tuple(_carried_into(problem, unit, chains, motion, pair, met[pair]) for pair in carried[:1])
         mine = tuple(tuple(p for p in pair if p in chosen) for pair in own)
         return Clash(mine, reason, "wider windows", met=own, also=also)
+    crossing = crossings(problem.scaffold, chains)
+    if crossing:
+        told = "{} and {} would fold through each other without thickness".format(*crossing[0])
+        return Clash(crossing, told, "wider windows", met=crossing, crosses=True)
     return chains, motion
 
 

@@ -1,0 +1,122 @@
+"""A choice played through once more as the paper's own sheets (sections 4 and 5.4): thickness only adds constraints.
+
+Thick panels reach from face to face, the sheets of the scaffold from mid-sheet to mid-sheet, hinges at equal intervals:
+they are up to K + g longer a panel. Where elbows come as near as that, a fold is free with thickness and is none of the
+paper's. All that matters is how high the press stands: no snaps, no plinths. Copies of one sheet that fold alike
+between the same bases are the same curve over its height, moved aside, and never cross.
+
+Cost: bounds of all sheets of a unit against each other; frames are made only of those that share ground.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from foldfab.folding.mechanism import frames
+from foldfab.folding.model import Chain
+from foldfab.folding.press import follow_down
+from foldfab.folding.space import Batch, batch, meetings
+from foldfab.geometry.arrays import Array, Bools
+from foldfab.geometry.boxes import Boxes, near_pairs
+from foldfab.scaffold.model import Scaffold
+
+RIM = 0.02
+"""What is left out along the edges of each sheet, mm: sheets that only touch do not cross."""
+FRAMES = 48
+"""Instants of each section, from one base's start to the next, at which sheets are looked at."""
+LAYER = 1e-6
+"""Sheets that lie folded in one plane, as the paper's all do in the end, are stacked this far apart, mm."""
+ALIKE = 1e-6
+"""Sheets whose panels differ by less have the same form, mm."""
+
+
+def crossings(scaffold: Scaffold, chains: Sequence[Chain]) -> tuple[tuple[str, str], ...]:
+    """The pairs of patches of one unit that fold in place and cross as sheets, each in the order of names, sorted."""
+    held = [c for c in chains if c.far is not None and c.mechanism == "in-place"]
+    played = sheets(scaffold, held) if len(held) > 1 else None
+    found: set[tuple[str, str]] = set()
+    for _, i, j in meetings(played[0], played[0], played[1]) if played is not None else ():
+        pairs = set(zip(played[0].lane[i].tolist(), played[0].lane[j].tolist(), strict=True))
+        found |= {(held[a].patch, held[b].patch) for a, b in pairs}
+    return tuple(sorted((min(pair), max(pair)) for pair in found))
+
+
+def sheets(scaffold: Scaffold, held: Sequence[Chain]) -> tuple[Batch, Bools] | None:
+    """Those chains (n,) that may cross others played as sheets, numbered as they come, and which (n, n) need no look.
+
+    None where no two of different patches share ground. All of them fold in place in one unit.
+    """
+    height = {name: scaffold.base(name).bottom for c in held for name in (c.anchor, c.far or "")}
+    made = [_sheet(c, height[c.anchor], height[c.far or ""]) for c in held]
+    meet = _share_ground(made)
+    near = np.nonzero(meet.any(0) | meet.any(1))[0].tolist()
+    if not near:
+        return None
+    low = min(height.values())
+    return _played({i: made[i] for i in near}, {name: z - low for name, z in height.items()}), ~meet
+
+
+def _sheet(chain: Chain, low: float, high: float) -> Chain:
+    """The chain as a sheet between two planes, its panels equal but for the longer one (figure 9)."""
+    up = np.sin(chain.lean) * chain.across + np.cos(chain.lean) * chain.rise
+    length, count = (high - low) / np.cos(chain.lean), len(chain.lengths)
+    aside = length * abs(np.sin(chain.lean))
+    lengths = np.full(count, (length - aside) / count)
+    lengths[0 if chain.turn * chain.lean > 0 else -1] += aside
+    root = chain.root + up * (low - chain.root[2]) / up[2]
+    return replace(chain, root=root, lengths=lengths, offsets=np.zeros(count + 1), pads=(0.0, 0.0))
+
+
+def _share_ground(sheets: list[Chain]) -> Bools:
+    """(n, n) which sheets may cross, seen from above; each pair once."""
+    corners = []
+    for c in sheets:
+        out = float(c.lengths.max()) * c.across
+        sides = [0 * out, np.sign(c.turn) * out] if c.lean == 0 else [-out, out]
+        corners.append([c.root + side + end * c.along for side in sides for end in c.span])
+    ground = np.array(corners) * [1.0, 1.0, 0.0]
+    bounds = ground.min(1), ground.max(1)
+    found = np.zeros((len(sheets), len(sheets)), dtype=bool)
+    for i, j in zip(*near_pairs(bounds, bounds), strict=True):
+        a, b = sheets[i], sheets[j]
+        found[i, j] = i < j and a.patch != b.patch and not _are_copies(a, b)
+    return found
+
+
+def _are_copies(a: Chain, b: Chain) -> bool:
+    """Whether two sheets are always one curve, moved aside."""
+    sides = np.sign(a.turn) * a.across, np.sign(b.turn) * b.across
+    leans = np.sign(a.turn) * a.lean, np.sign(b.turn) * b.lean
+    return (
+        (a.anchor, a.far) == (b.anchor, b.far)
+        and len(a.lengths) == len(b.lengths)
+        and bool(np.allclose(a.lengths, b.lengths, atol=ALIKE))
+        and bool(np.allclose(sides[0], sides[1], atol=ALIKE))
+        and abs(leans[0] - leans[1]) < ALIKE
+    )
+
+
+def _played(sheets: Mapping[int, Chain], down: Mapping[str, float]) -> Batch:
+    """The panels of sheets, by number, while a press comes down; its end, where all lies flat, left out."""
+    press = _press(sorted({0.0, *down.values()}, reverse=True))
+    many: list[Boxes] = []
+    for i, sheet in sheets.items():
+        near, far = (np.maximum(down[name] - press, 0.0) for name in (sheet.anchor, sheet.far or ""))
+        origin, turned = frames(sheet, follow_down(sheet, far - near))
+        middle = origin + turned[:, :, 2] * (sheet.lengths[:, None] / 2) + sheet.along * float(sheet.span.mean())
+        middle[..., 2] += i * LAYER - near[:, None]
+        half = np.zeros_like(middle)
+        half[..., 1], half[..., 2] = float(np.ptp(sheet.span)) / 2 - RIM, sheet.lengths / 2 - RIM
+        many.append(Boxes(middle, turned, half))
+    boxes = Boxes(*(np.concatenate([getattr(b, of) for b in many], axis=1) for of in ("center", "axes", "half")))
+    return batch(boxes, np.repeat(list(sheets), [len(sheet.lengths) for sheet in sheets.values()]))
+
+
+def _press(marks: Sequence[float]) -> Array:
+    """Heights (k,) of the press over the lowest plane, each section from one start to the next by even turns."""
+    turn = np.cos(np.linspace(0.0, np.pi / 2, FRAMES + 1)[:-1])
+    return np.concatenate([low + (high - low) * turn for high, low in itertools.pairwise(marks)])

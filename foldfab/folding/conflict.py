@@ -20,7 +20,7 @@ from foldfab.folding.basic import WHOLE
 from foldfab.folding.lanes import Lane
 from foldfab.folding.problem import Problem
 from foldfab.folding.repertoire import Repertoire, cuts_of, lane, pieces_met, regions, resting, stretches, swept
-from foldfab.folding.sheets import sheets
+from foldfab.folding.sheets import RIM, sheets
 from foldfab.folding.space import Batch, conflicts, meetings
 from foldfab.geometry.arrays import Array, Bools, Indices
 
@@ -73,12 +73,16 @@ def compare_sheets(problem: Problem, own: Repertoire) -> None:
     if {x.number for many in kinds for x in many} <= own.sheets:
         return
     own.sheets.update(x.number for many in kinds for x in many)
-    played = sheets(problem.scaffold, [many[0].chain for many in kinds])
+    played = sheets(problem.scaffold, [many[0].chain for many in kinds], RIM)
     if played is None:
         return
-    cuts = np.array([many[0].cuts for many in kinds])
-    for (i, j), pieces in conflicts(played[0], played[0], cuts, played[1]).items():
-        _learn(own, {(2 * a.number, 2 * b.number): pieces for a in kinds[i] for b in kinds[j]})
+    # Where a window ends at a cut it ends half the gap before it: what only meets there need not meet.
+    rim, cuts = RIM + problem.thickness.gap / 2, np.array([many[0].cuts for many in kinds])
+    ends = np.stack([cuts - rim, cuts + rim], axis=-1).reshape(len(kinds), -1)[:, 1:-1]
+    for (i, j), found in conflicts(played[0], played[0], ends, played[1]).items():
+        pieces = found[::2, ::2]
+        if pieces.any():
+            _learn(own, {(2 * a.number, 2 * b.number): pieces for a in kinds[i] for b in kinds[j]})
     own.tables.clear()
 
 

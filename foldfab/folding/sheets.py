@@ -10,7 +10,6 @@ Cost: bounds of all sheets of a unit against each other; frames are made only of
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -24,10 +23,15 @@ from foldfab.geometry.arrays import Array, Bools
 from foldfab.geometry.boxes import Boxes, near_pairs
 from foldfab.scaffold.model import Scaffold
 
-RIM = 0.02
-"""What is left out along the edges of each sheet, mm: sheets that only touch do not cross."""
+DEPTH = 0.05
+"""How much sheets may share, mm: a layer of a print."""
+RIM = 0.5
+"""What is left out along all edges where nothing may be ruled out that is not that deep, mm: in their last few degrees
+sheets share little, however far they cross."""
+SKEW = 1e-5
+"""Edges whose cross product is shorter than this are parallel and make no axis of their own."""
 FRAMES = 48
-"""Instants of each section, from one base's start to the next, at which sheets are looked at."""
+"""Instants at which sheets are looked at while those between two bases fold, by even turns."""
 LAYER = 1e-6
 """Sheets that lie folded in one plane, as the paper's all do in the end, are stacked this far apart, mm."""
 ALIKE = 1e-6
@@ -39,16 +43,20 @@ def crossings(scaffold: Scaffold, chains: Sequence[Chain]) -> tuple[tuple[str, s
     held = [c for c in chains if c.far is not None and c.mechanism == "in-place"]
     played = sheets(scaffold, held) if len(held) > 1 else None
     found: set[tuple[str, str]] = set()
-    for _, i, j in meetings(played[0], played[0], played[1]) if played is not None else ():
-        pairs = set(zip(played[0].lane[i].tolist(), played[0].lane[j].tolist(), strict=True))
-        found |= {(held[a].patch, held[b].patch) for a, b in pairs}
+    if played is not None:
+        many, never = played
+        for frame, i, j in meetings(many, many, never):
+            deep = _depth(many.boxes[frame, i], many.boxes[frame, j]) > DEPTH
+            pairs = set(zip(many.lane[i[deep]].tolist(), many.lane[j[deep]].tolist(), strict=True))
+            found |= {(held[a].patch, held[b].patch) for a, b in pairs}
     return tuple(sorted((min(pair), max(pair)) for pair in found))
 
 
-def sheets(scaffold: Scaffold, held: Sequence[Chain]) -> tuple[Batch, Bools] | None:
+def sheets(scaffold: Scaffold, held: Sequence[Chain], rim: float = 0.0) -> tuple[Batch, Bools] | None:
     """Those chains (n,) that may cross others played as sheets, numbered as they come, and which (n, n) need no look.
 
-    None where no two of different patches share ground. All of them fold in place in one unit.
+    None where no two of different patches share ground. All of them fold in place in one unit; `rim` mm are left out
+    along the edges of every panel.
     """
     height = {name: scaffold.base(name).bottom for c in held for name in (c.anchor, c.far or "")}
     made = [_sheet(c, height[c.anchor], height[c.far or ""]) for c in held]
@@ -57,7 +65,7 @@ def sheets(scaffold: Scaffold, held: Sequence[Chain]) -> tuple[Batch, Bools] | N
     if not near:
         return None
     low = min(height.values())
-    return _played({i: made[i] for i in near}, {name: z - low for name, z in height.items()}), ~meet
+    return _played({i: made[i] for i in near}, {name: z - low for name, z in height.items()}, rim), ~meet
 
 
 def _sheet(chain: Chain, low: float, high: float) -> Chain:
@@ -100,9 +108,9 @@ def _are_copies(a: Chain, b: Chain) -> bool:
     )
 
 
-def _played(sheets: Mapping[int, Chain], down: Mapping[str, float]) -> Batch:
+def _played(sheets: Mapping[int, Chain], down: Mapping[str, float], rim: float) -> Batch:
     """The panels of sheets, by number, while a press comes down; its end, where all lies flat, left out."""
-    press = _press(sorted({0.0, *down.values()}, reverse=True))
+    press = _press(sorted({(down[sheet.anchor], down[sheet.far or ""]) for sheet in sheets.values()}))
     many: list[Boxes] = []
     for i, sheet in sheets.items():
         near, far = (np.maximum(down[name] - press, 0.0) for name in (sheet.anchor, sheet.far or ""))
@@ -110,13 +118,25 @@ def _played(sheets: Mapping[int, Chain], down: Mapping[str, float]) -> Batch:
         middle = origin + turned[:, :, 2] * (sheet.lengths[:, None] / 2) + sheet.along * float(sheet.span.mean())
         middle[..., 2] += i * LAYER - near[:, None]
         half = np.zeros_like(middle)
-        half[..., 1], half[..., 2] = float(np.ptp(sheet.span)) / 2 - RIM, sheet.lengths / 2 - RIM
+        half[..., 1], half[..., 2] = float(np.ptp(sheet.span)) / 2 - rim, sheet.lengths / 2 - rim
         many.append(Boxes(middle, turned, half))
     boxes = Boxes(*(np.concatenate([getattr(b, of) for b in many], axis=1) for of in ("center", "axes", "half")))
     return batch(boxes, np.repeat(list(sheets), [len(sheet.lengths) for sheet in sheets.values()]))
 
 
-def _press(marks: Sequence[float]) -> Array:
-    """Heights (k,) of the press over the lowest plane, each section from one start to the next by even turns."""
+def _depth(a: Boxes, b: Boxes) -> Array:
+    """(n,) the least way that would part two collections pair by pair, mm; less than 0 where they are apart."""
+    crossed = np.cross(a.axes[:, :, None], b.axes[:, None]).reshape(-1, 9, 3)
+    size = np.linalg.norm(crossed, axis=-1)
+    axes = np.concatenate([a.axes, b.axes, crossed / np.maximum(size, SKEW)[..., None]], axis=1)
+    reach = sum(np.einsum("nmk,nk->nm", np.abs(np.einsum("nmj,nkj->nmk", axes, c.axes)), c.half) for c in (a, b))
+    shared = reach - np.abs(np.einsum("nij,nj->ni", axes, b.center - a.center))
+    shared[:, 6:][size < SKEW] = np.inf
+    least: Array = shared.min(axis=1)
+    return least
+
+
+def _press(pairs: Sequence[tuple[float, float]]) -> Array:
+    """Heights (k,) of the press, highest first, at which what folds between two heights turns evenly, but for its end."""
     turn = np.cos(np.linspace(0.0, np.pi / 2, FRAMES + 1)[:-1])
-    return np.concatenate([low + (high - low) * turn for high, low in itertools.pairwise(marks)])
+    return np.unique([low + (high - low) * turn for low, high in pairs])[::-1]

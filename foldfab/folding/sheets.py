@@ -35,7 +35,9 @@ FRAMES = 48
 LAYER = 1e-6
 """Sheets that lie folded in one plane, as the paper's all do in the end, are stacked this far apart, mm."""
 ALIKE = 1e-6
-"""Sheets whose panels differ by less have the same form, mm."""
+"""Heights that differ by less are one, mm."""
+DIGITS = 6
+"""To how many digits directions agree that are the same."""
 
 
 def crossings(scaffold: Scaffold, chains: Sequence[Chain]) -> tuple[tuple[str, str], ...]:
@@ -59,53 +61,54 @@ def sheets(scaffold: Scaffold, held: Sequence[Chain], rim: float = 0.0) -> tuple
     along the edges of every panel.
     """
     height = {name: scaffold.base(name).bottom for c in held for name in (c.anchor, c.far or "")}
-    made = [_sheet(c, height[c.anchor], height[c.far or ""]) for c in held]
-    meet = _share_ground(made)
+    meet = _share_room(held, height)
     near = np.nonzero(meet.any(0) | meet.any(1))[0].tolist()
     if not near:
         return None
     low = min(height.values())
-    return _played({i: made[i] for i in near}, {name: z - low for name, z in height.items()}, rim), ~meet
+    return _played({i: _sheet(held[i], height) for i in near}, {name: z - low for name, z in height.items()}, rim), ~meet
 
 
-def _sheet(chain: Chain, low: float, high: float) -> Chain:
-    """The chain as a sheet between two planes, its panels equal but for the longer one (figure 9)."""
+def _share_room(held: Sequence[Chain], height: Mapping[str, float]) -> Bools:
+    """(n, n) which chains may cross as sheets; each pair once. Storeys stay above each other, whatever ground they share."""
+    ends = np.array([[height[c.anchor], height[c.far or ""]] for c in held])
+    longest = [float(_lengths(c, high - low).max()) for c, (low, high) in zip(held, ends.tolist(), strict=True)]
+    sides = [[0.0, np.sign(c.turn) * a] if c.lean == 0 else [-a, a] for c, a in zip(held, longest, strict=True)]
+    root, across, along = (np.array([getattr(c, of) for c in held]) for of in ("root", "across", "along"))
+    span = np.array([c.span for c in held])
+    corners = (root[:, None] + np.array(sides)[..., None] * across[:, None])[:, :, None]
+    corners = (corners + span[:, None, :, None] * along[:, None, None]).reshape(len(held), 4, 3)
+    low, high = corners.min(1), corners.max(1)
+    low[:, 2], high[:, 2] = ends[:, 0], ends[:, 1] - ALIKE
+    found = np.zeros((len(held), len(held)), dtype=bool)
+    found[near_pairs((low, high), (low, high))] = True
+    kinds = [(c.anchor, c.far, len(c.lengths), *_folded_to(c)) for c in held]
+    for i, j in zip(*np.nonzero(np.triu(found)), strict=True):
+        found[i, j] = held[i].patch != held[j].patch and kinds[i] != kinds[j]
+    return np.triu(found)
+
+
+def _folded_to(chain: Chain) -> tuple[float, ...]:
+    """Its lean and its normal, both towards the side to which its first panel folds."""
+    side = float(np.sign(chain.turn))
+    return tuple(round(side * x, DIGITS) + 0.0 for x in (chain.lean, *chain.across.tolist()))
+
+
+def _sheet(chain: Chain, height: Mapping[str, float]) -> Chain:
+    """The chain as a sheet between the planes of its bases."""
+    low, high = height[chain.anchor], height[chain.far or ""]
     up = np.sin(chain.lean) * chain.across + np.cos(chain.lean) * chain.rise
-    length, count = (high - low) / np.cos(chain.lean), len(chain.lengths)
+    root, count = chain.root + up * (low - chain.root[2]) / up[2], len(chain.lengths)
+    return replace(chain, root=root, lengths=_lengths(chain, high - low), offsets=np.zeros(count + 1), pads=(0.0, 0.0))
+
+
+def _lengths(chain: Chain, clear: float) -> Array:
+    """(m,) of the panels of a sheet, mm: equal, but for the one that is longer by how far it leans aside (figure 9)."""
+    length, count = clear / np.cos(chain.lean), len(chain.lengths)
     aside = length * abs(np.sin(chain.lean))
-    lengths = np.full(count, (length - aside) / count)
+    lengths: Array = np.full(count, (length - aside) / count)
     lengths[0 if chain.turn * chain.lean > 0 else -1] += aside
-    root = chain.root + up * (low - chain.root[2]) / up[2]
-    return replace(chain, root=root, lengths=lengths, offsets=np.zeros(count + 1), pads=(0.0, 0.0))
-
-
-def _share_ground(sheets: list[Chain]) -> Bools:
-    """(n, n) which sheets may cross, seen from above; each pair once."""
-    corners = []
-    for c in sheets:
-        out = float(c.lengths.max()) * c.across
-        sides = [0 * out, np.sign(c.turn) * out] if c.lean == 0 else [-out, out]
-        corners.append([c.root + side + end * c.along for side in sides for end in c.span])
-    ground = np.array(corners) * [1.0, 1.0, 0.0]
-    bounds = ground.min(1), ground.max(1)
-    found = np.zeros((len(sheets), len(sheets)), dtype=bool)
-    for i, j in zip(*near_pairs(bounds, bounds), strict=True):
-        a, b = sheets[i], sheets[j]
-        found[i, j] = i < j and a.patch != b.patch and not _are_copies(a, b)
-    return found
-
-
-def _are_copies(a: Chain, b: Chain) -> bool:
-    """Whether two sheets are always one curve, moved aside."""
-    sides = np.sign(a.turn) * a.across, np.sign(b.turn) * b.across
-    leans = np.sign(a.turn) * a.lean, np.sign(b.turn) * b.lean
-    return (
-        (a.anchor, a.far) == (b.anchor, b.far)
-        and len(a.lengths) == len(b.lengths)
-        and bool(np.allclose(a.lengths, b.lengths, atol=ALIKE))
-        and bool(np.allclose(sides[0], sides[1], atol=ALIKE))
-        and abs(leans[0] - leans[1]) < ALIKE
-    )
+    return lengths
 
 
 def _played(sheets: Mapping[int, Chain], down: Mapping[str, float], rim: float) -> Batch:

@@ -18,9 +18,11 @@ import numpy as np
 from foldfab.folding.mechanism import frames
 from foldfab.folding.model import Chain
 from foldfab.folding.press import follow_down
+from foldfab.folding.site import Site
 from foldfab.folding.space import Batch, batch, meetings
 from foldfab.geometry.arrays import Array, Bools
-from foldfab.geometry.boxes import Boxes, near_pairs
+from foldfab.geometry.boxes import Boxes, near_pairs, stacked
+from foldfab.geometry.rotation import cross
 from foldfab.scaffold.model import Scaffold
 
 DEPTH = 0.05
@@ -52,6 +54,30 @@ def crossings(scaffold: Scaffold, chains: Sequence[Chain]) -> tuple[tuple[str, s
             pairs = set(zip(many.lane[i[deep]].tolist(), many.lane[j[deep]].tolist(), strict=True))
             found |= {(held[a].patch, held[b].patch) for a, b in pairs}
     return tuple(sorted((min(pair), max(pair)) for pair in found))
+
+
+def swings_into(scaffold: Scaffold, chain: Chain, standing: Sequence[Site]) -> tuple[str, ...]:
+    """The patches, sorted, that stand unfolded on the base of a T-scaffold and that it crosses as a sheet.
+
+    What lies folded there lies in the plane in which the T ends. Whatever the base does, they move with it.
+    """
+    patch, low = scaffold.patch(chain.patch), scaffold.base(chain.anchor).bottom
+    tip = float(patch.center[2] + chain.rise[2] * abs(patch.up[2]) * patch.length / 2)
+    count, length = len(chain.lengths), abs(tip - low) / np.cos(chain.lean)
+    near = [s for s in standing if abs((s.patch.center - chain.root) @ chain.across) < length / count + s.patch.length]
+    if not near:
+        return ()
+    sheet = replace(
+        chain, root=_foot(chain, low), lengths=np.full(count, length / count), offsets=np.zeros(count + 1), pads=(0, 0)
+    )
+    swung = batch(_boxes(sheet, np.linspace(0.0, 1.0, FRAMES + 1)[:-1], 0.0), np.zeros(count, dtype=np.int64))
+    still = stacked([_open(site) for site in near])
+    stood = batch(Boxes(still.center[None], still.axes[None], still.half[None]), np.arange(len(near)))
+    found: set[str] = set()
+    for frame, i, j in meetings(swung, stood):
+        deep = _depth(swung.boxes[frame, i], stood.boxes[0, j]) > DEPTH
+        found |= {near[k].patch.name for k in j[deep].tolist()}
+    return tuple(sorted(found))
 
 
 def sheets(scaffold: Scaffold, held: Sequence[Chain], rim: float = 0.0) -> tuple[Batch, Bools] | None:
@@ -97,9 +123,25 @@ def _folded_to(chain: Chain) -> tuple[float, ...]:
 def _sheet(chain: Chain, height: Mapping[str, float]) -> Chain:
     """The chain as a sheet between the planes of its bases."""
     low, high = height[chain.anchor], height[chain.far or ""]
+    offsets = np.zeros(len(chain.lengths) + 1)
+    return replace(
+        chain, root=_foot(chain, low), lengths=_lengths(chain, high - low), offsets=offsets, pads=(0.0, 0.0)
+    )
+
+
+def _foot(chain: Chain, plane: float) -> Array:
+    """(3,) where the middle line of an open chain goes through a plane at some height."""
     up = np.sin(chain.lean) * chain.across + np.cos(chain.lean) * chain.rise
-    root, count = chain.root + up * (low - chain.root[2]) / up[2], len(chain.lengths)
-    return replace(chain, root=root, lengths=_lengths(chain, high - low), offsets=np.zeros(count + 1), pads=(0.0, 0.0))
+    foot: Array = chain.root + up * (plane - chain.root[2]) / up[2]
+    return foot
+
+
+def _open(site: Site) -> Boxes:
+    """The open sheet (1,) of a patch, between its neighbours."""
+    up = np.sin(site.lean) * site.across + np.cos(site.lean) * site.rise
+    middle = site.patch.center + site.along * (float(site.span.mean()) + (site.foot - site.patch.center) @ site.along)
+    half = np.array([[0.0, float(np.ptp(site.span)) / 2, site.patch.length / 2]])
+    return Boxes(middle[None], np.array([[cross(site.along, up), site.along, up]]), half)
 
 
 def _lengths(chain: Chain, clear: float) -> Array:
@@ -117,14 +159,20 @@ def _played(sheets: Mapping[int, Chain], down: Mapping[str, float], rim: float) 
     many: list[Boxes] = []
     for i, sheet in sheets.items():
         near, far = (np.maximum(down[name] - press, 0.0) for name in (sheet.anchor, sheet.far or ""))
-        origin, turned = frames(sheet, follow_down(sheet, far - near))
-        middle = origin + turned[:, :, 2] * (sheet.lengths[:, None] / 2) + sheet.along * float(sheet.span.mean())
-        middle[..., 2] += i * LAYER - near[:, None]
-        half = np.zeros_like(middle)
-        half[..., 1], half[..., 2] = float(np.ptp(sheet.span)) / 2 - rim, sheet.lengths / 2 - rim
-        many.append(Boxes(middle, turned, half))
-    boxes = Boxes(*(np.concatenate([getattr(b, of) for b in many], axis=1) for of in ("center", "axes", "half")))
-    return batch(boxes, np.repeat(list(sheets), [len(sheet.lengths) for sheet in sheets.values()]))
+        boxes = _boxes(sheet, follow_down(sheet, far - near), rim)
+        boxes.center[..., 2] += i * LAYER - near[:, None]
+        many.append(boxes)
+    whole = Boxes(*(np.concatenate([getattr(b, of) for b in many], axis=1) for of in ("center", "axes", "half")))
+    return batch(whole, np.repeat(list(sheets), [len(sheet.lengths) for sheet in sheets.values()]))
+
+
+def _boxes(sheet: Chain, progress: Array, rim: float) -> Boxes:
+    """The panels (k, m) of a sheet at each progress (k,), seen from its anchor, `rim` mm narrower all around."""
+    origin, turned = frames(sheet, progress)
+    middle = origin + turned[:, :, 2] * (sheet.lengths[:, None] / 2) + sheet.along * float(sheet.span.mean())
+    half = np.zeros_like(middle)
+    half[..., 1], half[..., 2] = float(np.ptp(sheet.span)) / 2 - rim, sheet.lengths / 2 - rim
+    return Boxes(middle, turned, half)
 
 
 def _depth(a: Boxes, b: Boxes) -> Array:

@@ -11,6 +11,7 @@ import pytest
 
 from foldfab.folding import realise, sheets, unit_fold
 from foldfab.folding.model import FoldSolution
+from foldfab.folding.problem import Problem
 from foldfab.folding.sheets import crossings
 from foldfab.recipe.model import Part
 from foldfab.validity.verify import violations
@@ -33,6 +34,7 @@ def unaware(monkeypatch: pytest.MonkeyPatch) -> None:
     """Makes the solver look at panels only."""
     for room in (realise, unit_fold):
         monkeypatch.setattr(room, "crossings", lambda *_: ())
+    monkeypatch.setattr(realise, "swings_into", lambda *_: ())
 
 
 def hinges(solution: FoldSolution) -> list[int]:
@@ -77,6 +79,31 @@ def test_a_crossing_that_is_only_found_in_play(
     compare = unit_fold.compare_sheets
     monkeypatch.setattr(unit_fold, "compare_sheets", lambda *a: asked.append("") or compare(*a))
     assert violations(solution(gate(82.0), slanting=False)) == () and asked == [""]
+
+
+def test_a_leg_that_swings_through_the_next_one(
+    wall_at: Any, board_at: Any, solution: Solutions, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The sheets are 70 mm long and the panels 65.7: 69 mm away there is room for panels alone."""
+    parts = (board_at("top", 72, 80), wall_at("left", -34.5, 0, 72), wall_at("right", 34.5, 0, 72))
+    good = solution(parts)
+    assert violations(good) == () and sum(m.cost for m in good.modifications) == 0
+    unaware(monkeypatch)
+    spoilt = violations(solution(parts))
+    assert {(v.kind, v.model, v.parts) for v in spoilt} == {("collision", "without thickness", ("left", "right"))}
+
+
+def test_a_leg_swings_through_what_stands_on_its_base_alone(
+    wall_at: Any, board_at: Any, solution: Solutions, problem: Callable[..., Problem]
+) -> None:
+    def through(apart: float) -> tuple[str, ...]:
+        parts = (board_at("top", 72, 200), wall_at("left", -apart / 2, 0, 72), wall_at("right", apart / 2, 0, 72))
+        made = solution(parts)
+        chain = made.chain("left")
+        inward = replace(chain, turn=abs(chain.turn) * np.sign(chain.across[0]))
+        return sheets.swings_into(made.scaffold, inward, [problem(parts).sites["right"]])
+
+    assert through(69.0) == ("right",) and through(71.0) == ()
 
 
 def test_copies_and_storeys_are_never_played(solution: Solutions, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,7 +3,8 @@
 Thick panels reach from face to face, the sheets of the scaffold from mid-sheet to mid-sheet, hinges at equal intervals:
 they are up to K + g longer a panel. Where elbows come as near as that, a fold is free with thickness and is none of the
 paper's. All that matters is how high the press stands: no snaps, no plinths. Copies of one sheet that fold alike
-between the same bases are the same curve over its height, moved aside, and never cross.
+between the same bases are the same curve over its height, moved aside, and never cross. T-scaffolds are held against
+what stands on their base.
 
 Cost: bounds of all sheets of a unit against each other; frames are made only of those that share ground.
 """
@@ -92,11 +93,12 @@ def sheets(scaffold: Scaffold, held: Sequence[Chain], rim: float = 0.0) -> tuple
     if not near:
         return None
     low = min(height.values())
-    return _played({i: _sheet(held[i], height) for i in near}, {name: z - low for name, z in height.items()}, rim), ~meet
+    down = {name: z - low for name, z in height.items()}
+    return _played({i: _sheet(held[i], height) for i in near}, down, rim), ~meet
 
 
 def _share_room(held: Sequence[Chain], height: Mapping[str, float]) -> Bools:
-    """(n, n) which chains may cross as sheets; each pair once. Storeys stay above each other, whatever ground they share."""
+    """(n, n) which chains may cross as sheets, each pair once; storeys stay above each other."""
     ends = np.array([[height[c.anchor], height[c.far or ""]] for c in held])
     longest = [float(_lengths(c, high - low).max()) for c, (low, high) in zip(held, ends.tolist(), strict=True)]
     sides = [[0.0, np.sign(c.turn) * a] if c.lean == 0 else [-a, a] for c, a in zip(held, longest, strict=True)]
@@ -124,9 +126,7 @@ def _sheet(chain: Chain, height: Mapping[str, float]) -> Chain:
     """The chain as a sheet between the planes of its bases."""
     low, high = height[chain.anchor], height[chain.far or ""]
     offsets = np.zeros(len(chain.lengths) + 1)
-    return replace(
-        chain, root=_foot(chain, low), lengths=_lengths(chain, high - low), offsets=offsets, pads=(0.0, 0.0)
-    )
+    return replace(chain, root=_foot(chain, low), lengths=_lengths(chain, high - low), offsets=offsets, pads=(0.0, 0.0))
 
 
 def _foot(chain: Chain, plane: float) -> Array:
@@ -188,6 +188,6 @@ def _depth(a: Boxes, b: Boxes) -> Array:
 
 
 def _press(pairs: Sequence[tuple[float, float]]) -> Array:
-    """Heights (k,) of the press, highest first, at which what folds between two heights turns evenly, but for its end."""
+    """Heights (k,) of the press, highest first, at which what folds between two heights turns evenly; not its end."""
     turn = np.cos(np.linspace(0.0, np.pi / 2, FRAMES + 1)[:-1])
     return np.unique([low + (high - low) * turn for low, high in pairs])[::-1]

@@ -170,9 +170,7 @@ def _chains(problem: Problem, graph: Graph, picked: tuple[int, ...]) -> list[Cha
         place = options.place(i)
         if place is not None:
             lane, window = place
-            span = basic.window_span(
-                problem.sites[lane.patch], window, problem.options.shrink_steps, problem.thickness
-            )
+            span = basic.window_span(problem.sites[lane.patch], window, problem.options.shrink_steps, problem.thickness)
             made += [replace(lane.chain, span=span)] if span is not None else []
     return made
 

@@ -21,7 +21,7 @@ Solutions = Callable[..., FoldSolution]
 
 @pytest.fixture
 def gate(wall_at: Any, board_at: Any) -> Callable[[float], tuple[Part, ...]]:
-    """Two walls `apart` mm that can only fold towards each other: their elbows reach 42 mm in as sheets, 39.7 as panels."""
+    """Two walls `apart` mm that can only fold towards each other: elbows reach 42 mm in as sheets, 39.7 as panels."""
 
     def made(apart: float) -> tuple[Part, ...]:
         walls = (wall_at("left", -apart / 2, 0, 84), wall_at("right", apart / 2, 0, 84))
@@ -56,9 +56,7 @@ def test_elbows_that_only_sheets_have(
     assert crossings(spoilt.scaffold, spoilt.chains) == (("left", "right"),)
 
 
-def test_elbows_that_nothing_is_in_the_way_of(
-    gate: Callable[[float], tuple[Part, ...]], solution: Solutions
-) -> None:
+def test_elbows_that_nothing_is_in_the_way_of(gate: Callable[[float], tuple[Part, ...]], solution: Solutions) -> None:
     good = solution(gate(85.0), slanting=False)
     assert hinges(good) == [1, 1] and violations(good) == ()
     assert crossings(good.scaffold, good.chains) == ()

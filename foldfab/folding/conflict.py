@@ -20,6 +20,7 @@ from foldfab.folding.basic import WHOLE
 from foldfab.folding.lanes import Lane
 from foldfab.folding.problem import Problem
 from foldfab.folding.repertoire import Repertoire, cuts_of, lane, pieces_met, regions, resting, stretches, swept
+from foldfab.folding.sheets import RIM, sheets
 from foldfab.folding.space import Batch, conflicts, meetings
 from foldfab.geometry.arrays import Array, Bools, Indices
 
@@ -56,6 +57,33 @@ def compare(problem: Problem, own: Repertoire, many: Iterable[Lane]) -> None:
                 _learn(own, conflicts(_parted(own, a), _parted(own, b), cuts, apart))
     for number, y in plain.items():
         own.plain_of[number] = y.number if y is not None else number
+    if own.sheets:
+        compare_sheets(problem, own)
+
+
+def compare_sheets(problem: Problem, own: Repertoire) -> None:
+    """Finds out which pieces of the lanes that fold in place cross as the paper's sheets; what is so is so for good.
+
+    Lanes that differ by plinths, thickness or knuckles are one sheet.
+    """
+    alike: dict[object, list[Lane]] = {}
+    for x in (x for x in own.lanes if x.chain.far is not None and x.chain.shape.comes_down):
+        alike.setdefault((x.patch, x.variant.hinges, x.variant.side), []).append(x)
+    kinds = list(alike.values())
+    if {x.number for many in kinds for x in many} <= own.sheets:
+        return
+    own.sheets.update(x.number for many in kinds for x in many)
+    played = sheets(problem.scaffold, [many[0].chain for many in kinds], RIM)
+    if played is None:
+        return
+    # Where a window ends at a cut it ends half the gap before it: what only meets there need not meet.
+    rim, cuts = RIM + problem.thickness.gap / 2, np.array([many[0].cuts for many in kinds])
+    ends = np.stack([cuts - rim, cuts + rim], axis=-1).reshape(len(kinds), -1)[:, 1:-1]
+    for (i, j), found in conflicts(played[0], played[0], ends, played[1]).items():
+        pieces = found[::2, ::2]
+        if pieces.any():
+            _learn(own, {(2 * a.number, 2 * b.number): pieces for a in kinds[i] for b in kinds[j]})
+    own.tables.clear()
 
 
 def _regions_met(

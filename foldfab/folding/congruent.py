@@ -91,6 +91,7 @@ def copied(problem: Problem, known: Repertoire, then: Pose, unit: Unit, now: Pos
     made.interrupted.update(known.interrupted)
     made.plain_of.update(known.plain_of)
     made.compared.update(known.compared)
+    made.sheets.update(known.sheets)
     made.tables.update(known.tables)
     made.reach.update({str(base[b]): (low + offset, high + offset) for b, (low, high) in known.reach.items()})
     return made

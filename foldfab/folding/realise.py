@@ -18,6 +18,7 @@ from foldfab.folding.press import Motion
 from foldfab.folding.problem import Problem, clear_height, levels
 from foldfab.folding.prospects import PAD_SHARE
 from foldfab.folding.scene import Scene
+from foldfab.folding.sheets import crossings, swings_into
 from foldfab.folding.simulate import clashes
 from foldfab.folding.surroundings import Surroundings
 from foldfab.folding.units import Unit
@@ -43,6 +44,8 @@ class Clash:
     """What else does not work, for other reasons."""
     is_unlike: bool = False
     """Whether chains fold to heights, or snap by amounts, that could not be balanced."""
+    crosses: bool = False
+    """Whether it is free with thickness but not without."""
 
 
 def realised(
@@ -114,7 +117,26 @@ def _played(
         also = tuple(_carried_into(problem, unit, chains, motion, pair, met[pair]) for pair in carried[:1])
         mine = tuple(tuple(p for p in pair if p in chosen) for pair in own)
         return Clash(mine, reason, "wider windows", met=own, also=also)
+    crossing = crossings(problem.scaffold, chains)
+    if crossing:
+        told = "{} and {} would fold through each other without thickness".format(*crossing[0])
+        return Clash(crossing, told, "wider windows", met=crossing, crosses=True)
+    swung = _swung(problem, chains, around)
+    if swung:
+        told = "{} would swing through {} without thickness".format(*swung[0])
+        return Clash(tuple((tip,) for tip, _ in swung), told, "wider windows", met=swung)
     return chains, motion
+
+
+def _swung(problem: Problem, chains: tuple[Chain, ...], around: Surroundings) -> tuple[tuple[str, str], ...]:
+    """By T-scaffold and what stands on the same base, which of them cross as sheets."""
+    found: list[tuple[str, str]] = []
+    for chain in (c for c in chains if c.far is None):
+        names = sorted({s.owner for s in around.solids if s.state == "open" and s.owner in problem.sites})
+        near = [problem.sites[p] for p in names if p != chain.patch]
+        near = [s for s in near if chain.anchor in (s.anchor, s.far)]
+        found += [(chain.patch, name) for name in swings_into(problem.scaffold, chain, near)]
+    return tuple(found)
 
 
 def _carried_into(

@@ -72,6 +72,8 @@ class Repertoire:
     """By lane on plinths, the same without."""
     compared: set[int] = field(default_factory=set)
     """Lanes whose conflicts are known."""
+    sheets: set[int] = field(default_factory=set)
+    """Lanes that were compared without thickness as well, as far as that was needed."""
     tables: dict[object, Bools] = field(default_factory=dict)
     """Conflict tables between the options of two patches that were made already."""
     least: dict[str, Place] = field(default_factory=dict)

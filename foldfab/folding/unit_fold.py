@@ -7,12 +7,13 @@ lack, and the fold is simulated. What then meets is added to the conflicts and t
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from foldfab.folding import basic
 from foldfab.folding.basic import Option, Variant
+from foldfab.folding.conflict import compare_sheets
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.graph import Graph, Lesson
 from foldfab.folding.interruption import interrupted
@@ -24,6 +25,7 @@ from foldfab.folding.realise import Clash, realised
 from foldfab.folding.reasons import reason_against, reasons_of
 from foldfab.folding.repertoire import Place, Repertoire, extend
 from foldfab.folding.scene import Scene, alone
+from foldfab.folding.sheets import crossings
 from foldfab.folding.surroundings import Surroundings, look
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Indices
@@ -146,6 +148,10 @@ def least_choice(problem: Problem, own: Repertoire) -> Choice:
     if interrupted(problem, own, graph, picked):
         found, graph = posed()
         _, graph, picked = _bettered(problem, own, found, graph, graph.cheapest(), posed)
+    if picked is not None and not own.sheets and crossings(problem.scaffold, _chains(problem, graph, picked)):
+        compare_sheets(problem, own)
+        found, graph = posed()
+        _, graph, picked = _bettered(problem, own, found, graph, graph.cheapest(), posed)
     if picked is None:
         return Choice(np.inf, {})
     chosen = {o.patch: o.place(i) for o, i in zip(graph.options, picked, strict=True)}
@@ -155,6 +161,18 @@ def least_choice(problem: Problem, own: Repertoire) -> Choice:
     # Where the work did not suffice to prove the choice, what it may be too dear by is no part of what must be paid.
     weight = problem.least[own.unit] = graph.weight(picked) - sum(graph.gaps)
     return Choice(weight, places)
+
+
+def _chains(problem: Problem, graph: Graph, picked: tuple[int, ...]) -> list[Chain]:
+    """The chains of a choice as they are before anything is balanced."""
+    made = []
+    for options, i in zip(graph.options, picked, strict=True):
+        place = options.place(i)
+        if place is not None:
+            lane, window = place
+            span = basic.window_span(problem.sites[lane.patch], window, problem.options.shrink_steps, problem.thickness)
+            made += [replace(lane.chain, span=span)] if span is not None else []
+    return made
 
 
 def is_solved(problem: Problem, around: Surroundings) -> bool:
@@ -193,6 +211,9 @@ def _fold(
             )  # fmt: skip
         why += [result.reason] if result.reason not in why else []
         graph.learn(picked, result)
+        if result.crosses and not own.sheets:
+            compare_sheets(problem, own)
+            graph = Graph(problem, own, found, around.offset, graph.learned, scene.chosen)
     return Refusal(unit, reason_against(problem, own, found, why), tuple(graph.learned))
 
 

@@ -33,6 +33,18 @@ def test_shipped_recipes_are_valid(path: Path) -> None:
     assert found.moments > 50
 
 
+@pytest.mark.parametrize("path", RECIPES, ids=[path.stem for path in RECIPES])
+def test_shipped_recipes_are_valid_along_every_axis(path: Path) -> None:
+    """With thickness and without; where an axis is refused, nothing is claimed."""
+    for axis in ("-x", "-y", "-z"):
+        recipe = foldfab.load(str(path), direction=axis, ordering="greedy")
+        try:
+            solution = foldfab.foldabilize(recipe)
+        except foldfab.FoldfabError:
+            continue
+        assert [v.text for v in violations(solution)] == []
+
+
 @pytest.mark.parametrize("name", NAMED)
 def test_small_furniture_is_valid(name: str, solution: Solutions) -> None:
     assert [v.text for v in violations(solution(name))] == []

@@ -20,9 +20,11 @@ from foldfab.folding.prospects import PAD_SHARE
 from foldfab.folding.scene import Scene
 from foldfab.folding.sheets import crossings, swings_into
 from foldfab.folding.simulate import clashes
+from foldfab.folding.site import Site
 from foldfab.folding.surroundings import Surroundings
 from foldfab.folding.units import Unit
 from foldfab.folding.work import PLAYING
+from foldfab.geometry.boxes import Boxes
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,14 +131,24 @@ def _played(
 
 
 def _swung(problem: Problem, chains: tuple[Chain, ...], around: Surroundings) -> tuple[tuple[str, str], ...]:
-    """By T-scaffold and what stands on the same base, which of them cross as sheets."""
+    """By T-scaffold and what stands on the same base, as wide as it is left, which of them cross as sheets."""
     found: list[tuple[str, str]] = []
+    shown = sorted(
+        ((s.owner, s.boxes) for s in around.solids if s.state == "open" and s.owner in problem.sites),
+        key=lambda of: of[0],
+    )
     for chain in (c for c in chains if c.far is None):
-        names = sorted({s.owner for s in around.solids if s.state == "open" and s.owner in problem.sites})
-        near = [problem.sites[p] for p in names if p != chain.patch]
-        near = [s for s in near if chain.anchor in (s.anchor, s.far)]
+        beside = ((problem.sites[owner], boxes) for owner, boxes in shown if owner != chain.patch)
+        near = [_left_of(site, boxes) for site, boxes in beside if chain.anchor in (site.anchor, site.far)]
         found += [(chain.patch, name) for name in swings_into(problem.scaffold, chain, near)]
     return tuple(found)
+
+
+def _left_of(site: Site, boxes: Boxes) -> Site:
+    """A patch that stands open as these boxes (n,), as wide as they are together."""
+    middle = (boxes.center - site.foot) @ site.along
+    reach = (np.abs(boxes.axes @ site.along) * boxes.half).sum(-1)
+    return replace(site, span=np.array([(middle - reach).min(), (middle + reach).max()]))
 
 
 def _carried_into(

@@ -10,9 +10,12 @@ import numpy as np
 import pytest
 
 from foldfab.folding import realise, sheets, unit_fold
+from foldfab.folding.congruent import repertoire
 from foldfab.folding.model import FoldSolution
 from foldfab.folding.problem import Problem
+from foldfab.folding.scene import open_scene, shown
 from foldfab.folding.sheets import crossings
+from foldfab.folding.surroundings import look
 from foldfab.recipe.model import Part
 from foldfab.validity.verify import violations
 
@@ -102,6 +105,24 @@ def test_a_leg_swings_through_what_stands_on_its_base_alone(
         return sheets.swings_into(made.scaffold, inward, [problem(parts).sites["right"]])
 
     assert through(69.0) == ("right",) and through(71.0) == ()
+
+
+@pytest.mark.parametrize(("left", "is_free"), [((20.0, 30.0), True), ((0.0, 30.0), False)])
+def test_a_leg_swings_past_what_will_be_too_narrow_to_be_met(
+    left: tuple[float, float], is_free: bool, wall_at: Any, board_at: Any, solution: Solutions,
+    problem: Callable[..., Problem],
+) -> None:  # fmt: skip
+    parts = (board_at("top", 72, 200), wall_at("left", -34.5, 0, 72), wall_at("right", 34.5, 0, 72))
+    posed, made = problem(parts), solution(parts)
+    chain, other = made.chain("left"), made.chain("right")
+    side = float(np.sign(other.along @ chain.along))
+    span = np.sort(side * np.array(left))
+    narrow = replace(other, span=span, hinge_spans=np.tile(span, (len(other.hinge_spans), 1)))
+    scene = shown(open_scene(posed), ["right"], [narrow], is_folded=False)
+    unit = posed.unit_of["left"]
+    around = look(posed, scene, repertoire(posed, unit))
+    inward = replace(chain, turn=abs(chain.turn) * np.sign(chain.across[0]), span=np.array([-30.0, 10.0]))
+    assert (realise._swung(posed, (inward,), around) == ()) is is_free
 
 
 def test_copies_and_storeys_are_never_played(solution: Solutions, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,7 +11,7 @@ in all this takes O(n k) solutions where costs stay at their bounds, and O(n²) 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 import networkx as nx
@@ -66,6 +66,7 @@ class _State:
     place: Mapping[str, int]
     """By unit, how many have lower bases; what lies flat first is in the way of nothing above."""
     rest: dict[str, Unit]
+    """The units that are not folded yet, those with the lowest bases first."""
     guess: dict[str, float] = field(default_factory=dict)
     """By remaining unit, what folding it now would count: exact, or at least not too much."""
     waits: dict[str, set[str]] = field(default_factory=dict)
@@ -85,7 +86,9 @@ def floors(problem: Problem) -> dict[str, Choice]:
 
 def greedy(problem: Problem, scene: Scene, floor: Mapping[str, Choice]) -> Ordered:
     """Folds all units of the open scene one after another; `floor` is the cheapest choice of each."""
-    state = _State(problem, scene, floor, _beside(problem), _places(problem), {u.name: u for u in problem.units})
+    place = _places(problem)
+    rest = {u.name: u for u in sorted(problem.units, key=lambda u: place[u.name])}
+    state = _State(problem, scene, floor, _beside(problem), place, rest)
     for unit in problem.units:
         _look_again(state, unit)
     folds: list[UnitFold] = []
@@ -226,9 +229,9 @@ def _may_look_ahead(state: _State) -> bool:
     return work.spent < work.limit + 2 * PLAYING * len(state.problem.sites)
 
 
-def _hopes(state: _State) -> list[tuple[float, int, str]]:
+def _hopes(state: _State) -> Iterator[tuple[float, int, str]]:
     """The units that may fold, each with how much their folding could at best save others; best first, then lowest."""
-    hopes = {name: 0.0 for name in state.rest if state.guess[name] < REFUSED}
+    hopes: dict[str, float] = {}
     for name in state.rest:
         excess = state.guess[name] - state.floor[name].weight
         # What waits for several units is not helped by any one of them.
@@ -236,9 +239,16 @@ def _hopes(state: _State) -> list[tuple[float, int, str]]:
             state.sees[name] if not state.waits[name] else state.waits[name] if len(state.waits[name]) == 1 else ()
         )
         for other in helpers if excess > 0 else ():
-            if other in hopes and other != name:
-                hopes[other] -= excess
-    return sorted((round(hope, DIGITS), state.place[name], name) for name, hope in hopes.items())
+            if other in state.rest and other != name:
+                hopes[other] = hopes.get(other, 0.0) - excess
+    found = ((round(hope, DIGITS), state.place[name], name) for name, hope in hopes.items())
+    able = sorted(hope for hope in found if hope[0] < 0 and state.guess[hope[2]] < REFUSED)
+    yield from able
+    saving = {name for _, _, name in able}
+    # `rest` has the lowest first.
+    for name in state.rest:
+        if name not in saving and state.guess[name] < REFUSED:
+            yield 0.0, state.place[name], name
 
 
 def _change(state: _State, fold: UnitFold) -> float:
@@ -260,10 +270,11 @@ def _then(state: _State, fold: UnitFold) -> Scene:
 
 
 def _merged(state: _State, folds: list[UnitFold]) -> Ordered:
-    refusals = [r for n in state.rest if isinstance(r := fold_unit(state.problem, state.scene, state.rest[n]), Refusal)]
+    left = tuple(u for u in state.problem.units if u.name in state.rest)
+    refusals = [r for unit in left if isinstance(r := fold_unit(state.problem, state.scene, unit), Refusal)]
     if len(refusals) == 1:
         return Ordered(tuple(folds), tuple(refusals))
-    whole = merged(state.problem.scaffold, tuple(state.rest.values()))
+    whole = merged(state.problem.scaffold, left)
     fold = fold_unit(state.problem, state.scene, whole, in_place=True)
     if isinstance(fold, Refusal):
         return Ordered(tuple(folds), (*refusals, fold))

@@ -130,7 +130,7 @@ def shown(scene: Scene, patches: Iterable[str], chains: Iterable[Chain], *, is_f
         places[patch] = tuple(slots[: len(made)])
         fresh.update(zip(places[patch], made, strict=True))
     grown = len(solids) - len(base)
-    low, high = np.resize(scene.low, (len(solids), 3)), np.resize(scene.high, (len(solids), 3))
+    low, high = (np.concatenate([corner, np.zeros((grown, 3))]) for corner in (scene.low, scene.high))
     base = np.concatenate([base, np.full(grown, -1)])
     for place, solid in fresh.items():
         solids[place], low[place], high[place], base[place] = solid, solid.low, solid.high, solid.base

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 from foldfab.fabrication.inspect import instants
 from foldfab.fabrication.latches import Lock
@@ -101,9 +102,8 @@ def reached(joints: tuple[Joint, ...], ranges: Mapping[str, Turn], made: Mapping
 
 def _hinges(assembly: Assembly) -> Iterator[tuple[Chain, int, str]]:
     for chain in assembly.solution.chains:
-        bodies = [chain.anchor, *chain.panels, *([chain.far] if chain.far else [])]
-        for hinge in range(len(bodies) - 1):
-            yield chain, hinge, f"{bodies[hinge]}~{bodies[hinge + 1]}"
+        for hinge, (below, above) in enumerate(pairwise(chain.bodies)):
+            yield chain, hinge, f"{below}~{above}"
 
 
 def _best(trial: Trial, joint: str, candidates: Iterable[Stop], is_folded: bool) -> Fitted | None:

@@ -159,11 +159,20 @@ def stretches(
 
 
 def _breaks(site: Site, variant: Variant, thickness: Thickness) -> tuple[tuple[float, float], ...]:
-    """What an interrupted hinge leaves free, half a gap on from every cut."""
-    width, (first, last) = site.patch.width, variant.hinged
-    low, high = width * (first - 0.5) + thickness.gap / 2, width * (last - 0.5) - thickness.gap / 2
-    below, above = (-width / 2 - thickness.gap, low), (high, width / 2 + thickness.gap)
-    return ((below,) if first > 0 else ()) + ((above,) if last < 1 else ())
+    first, last = variant.hinged
+    return breaks(site, [mark for mark in ((0.0, first), (last, 1.0)) if mark[0] < mark[1]], thickness)
+
+
+def breaks(site: Site, free: Sequence[tuple[float, float]], thickness: Thickness) -> tuple[tuple[float, float], ...]:
+    """What hinges leave free, half a gap on from every cut, a whole one at the ends, mm; `free` in shares of width."""
+    width, gap = site.patch.width, thickness.gap
+    return tuple(
+        (
+            width * (first - 0.5) - (gap if first == 0 else gap / 2),
+            width * (last - 0.5) + (gap if last == 1 else gap / 2),
+        )
+        for first, last in free
+    )
 
 
 def modification(site: Site, option: Option, options: FoldOptions, reason: str) -> Modification:

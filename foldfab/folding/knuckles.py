@@ -104,19 +104,12 @@ def _with_knuckles(
 
 
 def _breaks(problem: Problem, chain: Chain, kept: set[int], window: Mark) -> tuple[tuple[float, float], ...]:
-    """What hinges leave free along `along` that have knuckles in some pieces only, half a gap on from every cut, mm."""
-    width, steps, half = problem.sites[chain.patch].patch.width, problem.options.shrink_steps, problem.thickness.gap / 2
-    stretches = _stretches(kept)
-    stretches = [(0 if a == window[0] else a, steps if b == window[1] else b) for a, b in stretches]
+    """What hinges leave free along `along` that have knuckles in some pieces only, mm."""
+    steps = problem.options.shrink_steps
+    stretches = [(0 if a == window[0] else a, steps if b == window[1] else b) for a, b in _stretches(kept)]
     ends = [0, *(end for mark in stretches for end in mark), steps]
-    marks = [(a, b) for a, b in zip(ends[::2], ends[1::2], strict=True) if b > a]
-    return tuple(
-        (
-            width * (a / steps - 0.5) + (-2 * half if a == 0 else -half),
-            width * (b / steps - 0.5) + (2 * half if b == steps else half),
-        )
-        for a, b in marks
-    )
+    free = [(a / steps, b / steps) for a, b in zip(ends[::2], ends[1::2], strict=True) if b > a]
+    return basic.breaks(problem.sites[chain.patch], free, problem.thickness)
 
 
 def _stretches(pieces: set[int]) -> list[Mark]:

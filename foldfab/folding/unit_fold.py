@@ -142,16 +142,17 @@ def least_choice(problem: Problem, own: Repertoire) -> Choice:
         found = unhindered(problem, own)
         return found, Graph(problem, own, found, np.zeros(3))
 
-    found, graph = posed()
-    _, graph, picked = _bettered(problem, own, found, graph, graph.cheapest(), posed)
+    def settled() -> tuple[Graph, tuple[int, ...] | None]:
+        found, graph = posed()
+        return _bettered(problem, own, found, graph, graph.cheapest(), posed)[1:]
+
+    graph, picked = settled()
     # Only here, before anything rests on what the unit counts at least.
     if interrupted(problem, own, graph, picked):
-        found, graph = posed()
-        _, graph, picked = _bettered(problem, own, found, graph, graph.cheapest(), posed)
+        graph, picked = settled()
     if picked is not None and not own.sheets and crossings(problem.scaffold, _chains(problem, graph, picked)):
         compare_sheets(problem, own)
-        found, graph = posed()
-        _, graph, picked = _bettered(problem, own, found, graph, graph.cheapest(), posed)
+        graph, picked = settled()
     if picked is None:
         return Choice(np.inf, {})
     chosen = {o.patch: o.place(i) for o, i in zip(graph.options, picked, strict=True)}

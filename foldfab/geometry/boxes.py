@@ -19,6 +19,8 @@ PARALLEL = 1e-9
 
 DENSE = 2**14
 """Up to this many pairs all bounds are compared at once; halving space would only cost time."""
+SMALL = 2**8
+"""Up to this many pairs the number of calls counts and not that of comparisons."""
 FEW = 2**12
 """Space is not halved further where this many pairs are left."""
 GAP_STEPS = 40
@@ -126,6 +128,9 @@ def near_pairs(a: tuple[Array, Array], b: tuple[Array, Array]) -> tuple[Indices,
 
 def _meeting(a: tuple[Array, Array], b: tuple[Array, Array]) -> Bools:
     """Whether each of the bounds (n) overlaps each of the others (m): (n, m)."""
+    if len(a[0]) * len(b[0]) <= SMALL:
+        inside: Bools = ((a[0][:, None] <= b[1]) & (a[1][:, None] >= b[0])).all(-1)
+        return inside
     # Row by row of one axis: numbers that lie side by side compare in half the time.
     low_a, high_a, low_b, high_b = (np.ascontiguousarray(corner.T) for corner in (*a, *b))
     near: Bools = low_a[0][:, None] <= high_b[0]
@@ -154,7 +159,7 @@ def _halves(a: tuple[Array, Array], b: tuple[Array, Array]) -> tuple[tuple[Bools
 
 def overlaps(a: Boxes, b: Boxes) -> Bools:
     """Whether the boxes of two equally shaped collections overlap, pair by pair (touching counts)."""
-    turn = np.einsum("...ik,...jk->...ij", a.axes, b.axes)
+    turn = a.axes @ b.axes.swapaxes(-1, -2)
     reach = np.abs(turn) + PARALLEL
     offset = np.einsum("...ik,...k->...i", a.axes, b.center - a.center)
     apart = (np.abs(offset) > a.half + np.einsum("...ij,...j->...i", reach, b.half)).any(-1)

@@ -50,9 +50,10 @@ def straight(recipe: Recipe) -> Array:
     axes, size = np.array([part.axes for part in recipe.parts]), np.array([part.size for part in recipe.parts])
     center = np.array([part.center for part in recipe.parts])[:, :2]
     best, least = np.eye(2), float(np.ptp(_corners(center, axes[..., :2], size), axis=0).prod()) * (1 - SAME)
-    for x, y in axes[np.abs(axes[:, :, 2]) < LEVEL][:, :2]:
-        angle = np.arctan2(y, x)
-        angle -= QUARTER * np.round(angle / QUARTER)
+    lines = axes[np.abs(axes[:, :, 2]) < LEVEL]
+    angles = np.arctan2(lines[:, 1], lines[:, 0])
+    angles -= QUARTER * np.round(angles / QUARTER)
+    for angle in dict.fromkeys(angles[angles != 0].tolist()):
         turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
         area = float(np.ptp(_corners(center @ turn.T, axes[..., :2] @ turn.T, size), axis=0).prod())
         if area < least * (1 - ROUNDING):

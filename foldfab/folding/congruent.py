@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from foldfab.folding.aside import set_aside
 from foldfab.folding.balance import pocket_room
 from foldfab.folding.lanes import Lane
 from foldfab.folding.nominal import Nominal
@@ -45,6 +46,8 @@ def repertoire(problem: Problem, unit: Unit) -> Repertoire:
         now = pose(problem, unit)
         known: tuple[Repertoire, Pose] | None = problem.poses.get(now.signature)
         made = copied(problem, known[0], known[1], unit, now) if known else made_from_scratch(problem, unit)
+        if not known:
+            set_aside(problem, made)
         problem.poses.setdefault(now.signature, (made, now))
         problem.repertoires[unit] = made
     found: Repertoire = problem.repertoires[unit]
@@ -85,6 +88,7 @@ def copied(problem: Problem, known: Repertoire, then: Pose, unit: Unit, now: Pos
     for (name, variant), lane in known.by_variant.items():
         made.by_variant[patch[name], variant] = lanes[lane.number] if lane is not None else None
     made.plain.update({patch[p]: tuple(lanes[x.number] for x in many) for p, many in known.plain.items()})
+    made.aside.update({patch[p]: tuple(lanes[x.number] for x in many) for p, many in known.aside.items()})
     made.later.update({patch[p]: list(many) for p, many in known.later.items()})
     made.pieces.update(known.pieces)
     made.parts.update(known.parts)

@@ -11,6 +11,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from foldfab.errors import FoldingError
+from foldfab.folding.aside import bring_back
 from foldfab.folding.conflict import snap_alike
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.options import Options, options_of
@@ -45,6 +46,8 @@ def require_allowed(problem: Problem) -> None:
     for unit in problem.units:
         asked = [p for p in unit.patches if demanding(problem, p)]
         own = repertoire(problem, unit)
+        if asked:
+            bring_back(own)
         for patch in asked:
             while own.later[patch]:
                 extend(problem, own, [patch])

@@ -18,8 +18,10 @@ from math import fsum
 import numpy as np
 
 from foldfab.folding import basic
+from foldfab.folding.aside import bring_back
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.group import Group, cut_of, posed
+from foldfab.folding.options import DELETION
 from foldfab.folding.ordering import Ordered, after, neighbouring
 from foldfab.folding.problem import Problem
 from foldfab.folding.repertoire import extend
@@ -121,6 +123,8 @@ def _group(problem: Problem, scene: Scene, others: list[UnitFold], floor: dict[s
     units = tuple(u for u in problem.units if u.name in floor)
     for unit in units:
         own = repertoire(problem, unit)
+        if spare + floor[unit.name] >= DELETION:
+            bring_back(own)
         for patch in unit.patches:
             first = own.plain[patch][0].variant if own.plain[patch] else None
             while own.later[patch] and _surcharge(problem, patch, first, own.later[patch][0]) < spare:

@@ -20,7 +20,7 @@ NAMED = 3
 def reasons_of(problem: Problem, own: Repertoire, found: Prospects, chosen: Mapping[str, Option]) -> dict[str, str]:
     """Why each changed patch had to be changed, one clause that follows what was done to it."""
     lanes = {p: _lane(found, p, o) for p, o in chosen.items()}
-    instead = {p: _instead(found, p, o) for p, o in chosen.items()}
+    instead = {p: _instead(own, found, p, o) for p, o in chosen.items()}
     kept = [x for x in lanes.values() if x is not None]
     across = meet_across(problem, own, [x for many in instead.values() for x in many], kept)
     reasons = {}
@@ -56,10 +56,10 @@ def _lane(found: Prospects, patch: str, option: Option) -> Lane | None:
     return next((x for x in found.lanes[patch] if x.variant == option.variant), None)
 
 
-def _instead(found: Prospects, patch: str, option: Option) -> list[Lane]:
+def _instead(own: Repertoire, found: Prospects, patch: str, option: Option) -> list[Lane]:
     """The lanes that would leave more of a patch: all where it is deleted, or those with fewer hinges."""
     most = option.variant.hinges if option.variant is not None else np.inf
-    return [x for x in found.lanes[patch] if x.variant.hinges < most]
+    return [x for x in (*own.aside.get(patch, ()), *found.lanes[patch]) if x.variant.hinges < most]
 
 
 def _narrowed(
@@ -69,7 +69,7 @@ def _narrowed(
     """What the part of the patch that is gone would meet."""
     lane = lanes[patch]
     if lane is None:
-        met = {name for x in instead for name in found.obstacles[x.number]}
+        met = {name for x in instead for name in found.obstacles.get(x.number, ())}
         met |= _met_by(own, instead, lanes, across)
         return _because(met, "it would meet")
     gone = [s for s in range(len(lane.cuts) - 1) if not option.window[0] <= s < option.window[1]]
@@ -85,7 +85,9 @@ def _split(
     own: Repertoire, found: Prospects, lanes: Mapping[str, Lane | None], fewer: list[Lane], across: set[tuple[int, int]]
 ) -> str:  # fmt: skip
     """What it would meet in one piece, or with fewer hinges."""
-    met = {name for x in fewer if found.blocked[x.number].any() for name in found.obstacles[x.number]}
+    # What was set aside has not been held against the surroundings.
+    looked = [x for x in fewer if x.number in found.blocked]
+    met = {name for x in looked if found.blocked[x.number].any() for name in found.obstacles[x.number]}
     met |= _met_by(own, fewer, lanes, across)
     return _because(met, "with fewer hinges it would meet") if met else "to come straight down"
 

@@ -58,6 +58,8 @@ class Repertoire:
     """Lanes by what they are; None where a variant does not fit."""
     plain: dict[str, tuple[Lane, ...]] = field(default_factory=dict)
     """By patch, its lanes without plinths that were made already, cheapest first."""
+    aside: dict[str, tuple[Lane, ...]] = field(default_factory=dict)
+    """By patch, such as only go together with deletions, as long as none is needed; cheaper than those in `plain`."""
     later: dict[str, list[Variant]] = field(default_factory=dict)
     """By patch, the variants that were not needed yet, cheapest first; all of them cost more than those in `plain`."""
     pieces: dict[tuple[int, int], Bools] = field(default_factory=dict)

@@ -12,12 +12,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from foldfab.folding import basic
+from foldfab.folding.aside import bring_back
 from foldfab.folding.basic import Option, Variant
 from foldfab.folding.conflict import compare_sheets
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.graph import Graph, Lesson
 from foldfab.folding.interruption import interrupted
 from foldfab.folding.model import Chain
+from foldfab.folding.options import DELETION
 from foldfab.folding.press import Motion
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import Prospects, blocked_pieces, prospects, unhindered
@@ -253,14 +255,19 @@ def _bettered(
 
     That the next ones will better it is seen far sooner than what is the cheapest choice until then.
     """
-    while wanted := _wanted(problem, own, graph, picked):
-        weight = graph.weight(picked) if picked is not None else -np.inf
-        while wanted:
-            extend(problem, own, wanted)
-            found, graph = posed()
-            wanted = _bettering(problem, own, graph, weight)
+    while True:
+        while wanted := _wanted(problem, own, graph, picked):
+            weight = graph.weight(picked) if picked is not None else -np.inf
+            while wanted:
+                extend(problem, own, wanted)
+                found, graph = posed()
+                wanted = _bettering(problem, own, graph, weight)
+            picked = graph.cheapest()
+        if not own.aside or (picked is not None and graph.weight(picked) < DELETION):
+            return found, graph, picked
+        bring_back(own)
+        found, graph = posed()
         picked = graph.cheapest()
-    return found, graph, picked
 
 
 def _wanted(problem: Problem, own: Repertoire, graph: Graph, picked: tuple[int, ...] | None) -> list[str]:

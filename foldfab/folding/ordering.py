@@ -86,7 +86,7 @@ def floors(problem: Problem) -> dict[str, Choice]:
 
 def greedy(problem: Problem, scene: Scene, floor: Mapping[str, Choice]) -> Ordered:
     """Folds all units of the open scene one after another; `floor` is the cheapest choice of each."""
-    place = _places(problem)
+    place = places(problem)
     rest = {u.name: u for u in sorted(problem.units, key=lambda u: place[u.name])}
     state = _State(problem, scene, floor, _beside(problem), place, rest)
     for unit in problem.units:
@@ -196,7 +196,8 @@ def _beside(problem: Problem) -> dict[str, set[str]]:
     return found
 
 
-def _places(problem: Problem) -> dict[str, int]:
+def places(problem: Problem) -> dict[str, int]:
+    """By unit, how many have lower bases."""
     number = problem.tree.number
     lowest_first = sorted(problem.units, key=lambda u: ([number[b] for b in u.bases], u.name))
     return {unit.name: place for place, unit in enumerate(lowest_first)}

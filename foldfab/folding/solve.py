@@ -9,6 +9,7 @@ import numpy as np
 
 from foldfab.errors import FoldingError, LossError
 from foldfab.folding import anatomy, basic
+from foldfab.folding.bottom_up import bottom_up
 from foldfab.folding.demands import require_allowed, require_choices, require_variants
 from foldfab.folding.improve import improved, weight
 from foldfab.folding.knuckles import given_back
@@ -107,7 +108,7 @@ def _ordered(
     Better ones than the greedy order are only looked for among those that delete no more than `worth` patches.
     """
     require_choices(problem, choices)
-    ordered = greedy(problem, scene, choices)
+    ordered = bottom_up(problem, scene, choices) or greedy(problem, scene, choices)
     floor = {name: choice.weight for name, choice in choices.items()}
     if not ordered.refusals and weight(ordered) - sum(floor.values()) <= NO_MORE:
         return ordered, sum(floor.values())

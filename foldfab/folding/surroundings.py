@@ -121,6 +121,8 @@ def _across(
     problem: Problem, unit: Unit, low: Array, high: Array, group: Indices, is_other: Bools
 ) -> list[tuple[int, int, Indices, Indices]]:
     """For each two clusters (lower, upper), solids of the one below solids of the other that may come down on them."""
+    if len(unit.bases) == 1:
+        return []
     faces = [problem.faces[b] for b in unit.bases]
     clear = np.array([[above.bottom - below.top for above in faces] for below in faces])
     a = b = np.nonzero(is_other)[0]

@@ -173,6 +173,9 @@ def _chains(problem: Problem, graph: Graph, picked: tuple[int, ...]) -> list[Cha
         place = options.place(i)
         if place is not None:
             lane, window = place
+            if window == (0, problem.options.shrink_steps):
+                made.append(lane.chain)
+                continue
             span = basic.window_span(problem.sites[lane.patch], window, problem.options.shrink_steps, problem.thickness)
             made += [replace(lane.chain, span=span)] if span is not None else []
     return made

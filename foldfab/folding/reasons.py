@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from foldfab.folding.basic import Option
-from foldfab.folding.conflict import meet_across
+from foldfab.folding.conflict import drag_alike, meet_across
 from foldfab.folding.lanes import Lane
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import Prospects
@@ -20,7 +20,7 @@ NAMED = 3
 def reasons_of(problem: Problem, own: Repertoire, found: Prospects, chosen: Mapping[str, Option]) -> dict[str, str]:
     """Why each changed patch had to be changed, one clause that follows what was done to it."""
     lanes = {p: _lane(found, p, o) for p, o in chosen.items()}
-    instead = {p: _instead(own, found, p, o) for p, o in chosen.items()}
+    instead = {p: _instead(found, p, o) for p, o in chosen.items()}
     kept = [x for x in lanes.values() if x is not None]
     across = meet_across(problem, own, [x for many in instead.values() for x in many], kept)
     reasons = {}
@@ -31,7 +31,7 @@ def reasons_of(problem: Problem, own: Repertoire, found: Prospects, chosen: Mapp
         if option.variant is None or option.window != (0, problem.options.shrink_steps):
             told.append(_narrowed(own, found, lanes, instead[patch], across, patch, option))
         if option.variant is not None and option.variant.hinges:
-            told.append(_split(own, found, lanes, instead[patch], across))
+            told.append(_split(own, found, lanes, instead[patch], across, patch))
         reasons[patch] = "; ".join(dict.fromkeys(text for text in told if text))
     return reasons
 
@@ -56,10 +56,10 @@ def _lane(found: Prospects, patch: str, option: Option) -> Lane | None:
     return next((x for x in found.lanes[patch] if x.variant == option.variant), None)
 
 
-def _instead(own: Repertoire, found: Prospects, patch: str, option: Option) -> list[Lane]:
+def _instead(found: Prospects, patch: str, option: Option) -> list[Lane]:
     """The lanes that would leave more of a patch: all where it is deleted, or those with fewer hinges."""
     most = option.variant.hinges if option.variant is not None else np.inf
-    return [x for x in (*own.aside.get(patch, ()), *found.lanes[patch]) if x.variant.hinges < most]
+    return [x for x in found.lanes[patch] if x.variant.hinges < most]
 
 
 def _narrowed(
@@ -69,7 +69,7 @@ def _narrowed(
     """What the part of the patch that is gone would meet."""
     lane = lanes[patch]
     if lane is None:
-        met = {name for x in instead for name in found.obstacles.get(x.number, ())}
+        met = {name for x in instead for name in found.obstacles[x.number]}
         met |= _met_by(own, instead, lanes, across)
         return _because(met, "it would meet")
     gone = [s for s in range(len(lane.cuts) - 1) if not option.window[0] <= s < option.window[1]]
@@ -82,14 +82,22 @@ def _narrowed(
 
 
 def _split(
-    own: Repertoire, found: Prospects, lanes: Mapping[str, Lane | None], fewer: list[Lane], across: set[tuple[int, int]]
+    own: Repertoire, found: Prospects, lanes: Mapping[str, Lane | None], fewer: list[Lane],
+    across: set[tuple[int, int]], patch: str,
 ) -> str:  # fmt: skip
     """What it would meet in one piece, or with fewer hinges."""
-    # What was set aside has not been held against the surroundings.
-    looked = [x for x in fewer if x.number in found.blocked]
-    met = {name for x in looked if found.blocked[x.number].any() for name in found.obstacles[x.number]}
+    met = {name for x in fewer if found.blocked[x.number].any() for name in found.obstacles[x.number]}
     met |= _met_by(own, fewer, lanes, across)
-    return _because(met, "with fewer hinges it would meet") if met else "to come straight down"
+    if met:
+        return _because(met, "with fewer hinges it would meet")
+    return _because(_not_along(own, patch), "it can slant only without") or "to come straight down"
+
+
+def _not_along(own: Repertoire, patch: str) -> set[str]:
+    """The patches that cannot slant the way of one whose slanted lanes were set aside."""
+    ways = own.aside.get(patch, ())
+    others = {p: any(drag_alike(x, y) for x in ways for y in many) for p, many in own.aside.items() if p != patch}
+    return {p for p, goes in others.items() if not goes} if ways else set()
 
 
 def _met_by(

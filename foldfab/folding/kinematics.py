@@ -12,7 +12,7 @@ from foldfab.folding.anatomy import anchor_feet, base_boxes, far_feet, moving_bo
 from foldfab.folding.mechanism import frames
 from foldfab.folding.model import Chain, FoldSolution, Step
 from foldfab.geometry.arrays import Array
-from foldfab.geometry.boxes import Boxes, bounds, grown, moved
+from foldfab.geometry.boxes import Boxes, bounds, grown, stacked
 
 FOOT_RIM = 0.5
 """How far plates may reach beyond the feet on them, mm."""
@@ -44,15 +44,17 @@ def size_at(solution: FoldSolution, time: float, turn: Array) -> Array:
     """
     thickness, t = solution.thickness, np.array([time])
     ends = {b.name: _travelled(solution, b.name, t)[0] for b in solution.scaffold.bases}
-    boxes = [moved(base_boxes(b, thickness), ends[b.name]) for b in solution.scaffold.bases]
+    parts = [(base_boxes(b, thickness), ends[b.name]) for b in solution.scaffold.bases]
     for chain in solution.chains:
         progress, _ = _progress(solution, chain, t)
-        boxes.append(moved(moving_boxes(chain, thickness, progress)[0], ends[chain.anchor]))
-        boxes.append(moved(grown(anchor_feet(chain, thickness), FOOT_RIM), ends[chain.anchor]))
+        parts.append((moving_boxes(chain, thickness, progress)[0], ends[chain.anchor]))
+        parts.append((grown(anchor_feet(chain, thickness), FOOT_RIM), ends[chain.anchor]))
         if chain.far is not None:
-            boxes.append(moved(grown(far_feet(chain, thickness), FOOT_RIM), ends[chain.far]))
-    corners = [bounds(Boxes(b.center @ turn.T, b.axes @ turn.T, b.half)) for b in boxes]
-    size: Array = np.concatenate([c[1] for c in corners]).max(0) - np.concatenate([c[0] for c in corners]).min(0)
+            parts.append((grown(far_feet(chain, thickness), FOOT_RIM), ends[chain.far]))
+    every = stacked([boxes for boxes, _ in parts])
+    shift = np.repeat([way for _, way in parts], [len(boxes) for boxes, _ in parts], axis=0)
+    low, high = bounds(Boxes((every.center + shift) @ turn.T, every.axes @ turn.T, every.half))
+    size: Array = high.max(0) - low.min(0)
     return size
 
 

@@ -259,8 +259,8 @@ def _bounds_meet(a: tuple[Array, Array], b: tuple[Array, Array]) -> Bools:
 
 def _once(a: Batch, b: Batch, frame: Indices, p: Indices, q: Indices) -> tuple[Indices, Indices, Indices]:
     """Every pair of parallel boxes once: which of their pieces meet is the same at all times."""
-    first, second = _at(a, frame, p), _at(b, frame, q)
-    same = np.abs(np.einsum("kj,kj->k", first.axes[:, 1], second.axes[:, 1])) > PARALLEL
+    first, second = (s.boxes.axes[_frame(s, frame), box, 1] for s, box in ((a, p), (b, q)))
+    same = np.abs(np.einsum("kj,kj->k", first, second)) > PARALLEL
     code = p * len(b) + q
     keep = ~same
     _, index = np.unique(code[same], return_index=True)
@@ -269,7 +269,12 @@ def _once(a: Batch, b: Batch, frame: Indices, p: Indices, q: Indices) -> tuple[I
 
 
 def _at(s: Batch, frame: Indices, box: Indices) -> Boxes:
-    return s.boxes[frame if len(s.low) > 1 else np.zeros_like(frame), box]
+    return s.boxes[_frame(s, frame), box]
+
+
+def _frame(s: Batch, frame: Indices) -> Indices:
+    """The frame of a batch at each frame, which is the only one for what stands still."""
+    return frame if len(s.low) > 1 else np.zeros_like(frame)
 
 
 def _intervals(boxes: Boxes, cuts: Array) -> tuple[Array, Array]:

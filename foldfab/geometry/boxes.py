@@ -165,14 +165,15 @@ def overlaps(a: Boxes, b: Boxes) -> Bools:
     apart = (np.abs(offset) > a.half + np.einsum("...ij,...j->...i", reach, b.half)).any(-1)
     along_b = np.abs(np.einsum("...i,...ij->...j", offset, turn))
     apart |= (along_b > b.half + np.einsum("...i,...ij->...j", a.half, reach)).any(-1)
-    rest = np.nonzero(~apart.reshape(-1))[0]
-    result = np.zeros(apart.shape, dtype=bool)
-    flat = result.reshape(-1)
-    flat[rest] = ~_edges_apart(
-        a.half.reshape(-1, 3)[rest], b.half.reshape(-1, 3)[rest], offset.reshape(-1, 3)[rest],
-        turn.reshape(-1, 3, 3)[rest], reach.reshape(-1, 3, 3)[rest],
-    )  # fmt: skip
-    return flat.reshape(apart.shape)
+    found: Bools = ~apart
+    # Boxes with an axis in common are apart along a face normal, or not at all.
+    skew = np.nonzero((found & (reach < 1).all((-1, -2))).reshape(-1))[0]
+    if len(skew):
+        found.reshape(-1)[skew] = ~_edges_apart(
+            a.half.reshape(-1, 3)[skew], b.half.reshape(-1, 3)[skew], offset.reshape(-1, 3)[skew],
+            turn.reshape(-1, 3, 3)[skew], reach.reshape(-1, 3, 3)[skew],
+        )  # fmt: skip
+    return found
 
 
 def _edges_apart(half_a: Array, half_b: Array, offset: Array, turn: Array, reach: Array) -> Bools:

@@ -342,12 +342,14 @@ def _kept(problem: Problem, own: Repertoire, x: Lane, inside: Array) -> tuple[Ar
     """(s, N_s) the pieces with knuckles, in all windows and then in all stretches of a lane, and which of these each
     window (w, s) may have: all its own, or a stretch within.
     """
-    steps = inside.shape[1]
-    kept = np.zeros((len(marks := stretches(problem, own, x)), steps), dtype=np.float32)
-    for row, (a, b) in zip(kept, marks, strict=True):
-        row[a:b] = 1
-    within = ~((inside[:, None] == 0) & (kept > 0)).any(2)
-    return np.concatenate([inside, kept]), np.concatenate([np.eye(len(inside), dtype=bool), within], axis=1)
+    if x.number not in own.knuckled:
+        kept = np.zeros((len(marks := stretches(problem, own, x)), inside.shape[1]), dtype=np.float32)
+        for row, (a, b) in zip(kept, marks, strict=True):
+            row[a:b] = 1
+        within = ~((inside[:, None] == 0) & (kept > 0)).any(2)
+        may = np.concatenate([np.eye(len(inside), dtype=bool), within], axis=1)
+        own.knuckled[x.number] = np.concatenate([inside, kept]), may
+    return own.knuckled[x.number]
 
 
 def _of_windows(met: Bools, never: Bools, inside: Array, count: int) -> Bools:

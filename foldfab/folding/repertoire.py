@@ -70,6 +70,8 @@ class Repertoire:
     """Lanes whose hinges were interrupted wherever they may be."""
     stretches: dict[int, tuple[Stretch, ...]] = field(default_factory=dict)
     """By lane, where its hinges may be interrupted, as far as that was asked for."""
+    knuckled: dict[int, tuple[Array, Bools]] = field(default_factory=dict)
+    """By lane, the pieces that keep knuckles in each window and stretch, and which of these each window may have."""
     plain_of: dict[int, int] = field(default_factory=dict)
     """By lane on plinths, the same without."""
     compared: set[int] = field(default_factory=set)

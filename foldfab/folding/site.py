@@ -155,18 +155,19 @@ def _apart(made: list[Site], thickness: Thickness) -> list[Site]:
     """Trims spans pair by pair until no two open panels are closer than the gap."""
     if not made:
         return made
-    solids = [slab(site, thickness) for site in made]
-    flat = Boxes(*(np.concatenate([getattr(s, f) for s in solids]) for f in ("center", "axes", "half")))
-    for i, j in zip(*close_pairs(grown(flat, thickness.gap / 2), grown(flat, thickness.gap / 2)), strict=True):
-        if i < j:
-            made[i], made[j] = _trimmed_pair(made[i], made[j], thickness)
+    solids = [grown(slab(site, thickness), thickness.gap / 2) for site in made]
+    whole, trimmed = stacked(solids), set[int]()
+    for i, j in zip(*(found.tolist() for found in close_pairs(whole, whole)), strict=True):
+        if i < j and (not {i, j} & trimmed or len(close_pairs(solids[i], solids[j])[0])):
+            for k, site in zip((i, j), _trimmed_pair(made[i], made[j], thickness), strict=True):
+                if site is not made[k]:
+                    made[k], solids[k] = site, grown(slab(site, thickness), thickness.gap / 2)
+                    trimmed.add(k)
     return made
 
 
 def _trimmed_pair(a: Site, b: Site, thickness: Thickness) -> tuple[Site, Site]:
     first, second = slab(a, thickness), slab(b, thickness)
-    if not len(close_pairs(grown(first, thickness.gap / 2), grown(second, thickness.gap / 2))[0]):
-        return a, b
     short_a, short_b = _trimmed(a, second, b, thickness), _trimmed(b, first, a, thickness)
     lost_a, lost_b = (float(np.ptp(old.span) - np.ptp(new.span)) for old, new in ((a, short_a), (b, short_b)))
     if min(lost_a, lost_b) > EDGE_THICKNESSES * max(a.panel, b.panel) + 3 * thickness.gap:

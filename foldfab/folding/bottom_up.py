@@ -50,9 +50,7 @@ def bottom_up(problem: Problem, scene: Scene, floor: Mapping[str, Choice]) -> Or
     return None if waiting else Ordered(tuple(folds), ())
 
 
-def _folded(
-    problem: Problem, scene: Scene, own: Repertoire, around: Surroundings, floor: Choice
-) -> UnitFold | None:
+def _folded(problem: Problem, scene: Scene, own: Repertoire, around: Surroundings, floor: Choice) -> UnitFold | None:
     """The fold of a unit where it costs no more than at least, or None where it does here."""
     chosen = _with_room(problem, own, around, floor)
     if chosen is not None:

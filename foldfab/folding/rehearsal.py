@@ -34,8 +34,7 @@ def first_clash(problem: Problem, scene: Scene, folds: tuple[UnitFold, ...]) -> 
     variants = {p: o.variant for fold in folds for p, o in fold.chosen.items() if o.variant is not None}
     patches = [patch for fold in folds for patch in fold.unit.patches]
     scene = shown(scene, patches, [chain for fold in folds for chain in fold.chains], is_folded=False)
-    # To the last one all looks as it did: whatever was open then is its own.
-    for i, fold in enumerate(folds[:-1]):
+    for i, fold in enumerate(folds):
         scene = after(problem, scene, folds[i - 1]) if i else scene
         around = look(problem, scene, repertoire(problem, fold.unit))
         if around.key == fold.seen:

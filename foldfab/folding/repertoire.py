@@ -232,9 +232,10 @@ def _reach(problem: Problem, own: Repertoire) -> dict[str, tuple[Array, Array]]:
     thickest = max(problem.sites[p].panel for p in own.unit.patches)
     margin = ROOM_THICKNESSES * (thickest + problem.thickness.gap)
     seen = [x.reach for x in own.lanes if x.reach is not None]
-    if len(seen) == len(own.lanes) and seen:
-        low, high = np.min([low for low, _ in seen], axis=0) - margin, np.max([high for _, high in seen], axis=0) + margin
-        return dict(zip(own.unit.bases, zip(low, high, strict=True), strict=True))
+    if seen and len(seen) == len(own.lanes):
+        ends = np.array(seen)
+        low, high = ends[:, 0].min(0) - margin, ends[:, 1].max(0) + margin
+        return {base: (low[i], high[i]) for i, base in enumerate(own.unit.bases)}
     found = {b: (np.full(3, np.inf), np.full(3, -np.inf)) for b in own.unit.bases}
     for section in range(own.nominal.sections):
         straight = [x for x in own.lanes if x.drag is None]

@@ -129,7 +129,7 @@ def near_pairs(a: tuple[Array, Array], b: tuple[Array, Array]) -> tuple[Indices,
 def _meeting(a: tuple[Array, Array], b: tuple[Array, Array]) -> Bools:
     """Whether each of the bounds (n) overlaps each of the others (m): (n, m)."""
     if len(a[0]) * len(b[0]) <= SMALL:
-        inside: Bools = ((a[0][:, None] <= b[1]) & (a[1][:, None] >= b[0])).all(-1)
+        inside: Bools = np.logical_and.reduce((a[0][:, None] <= b[1]) & (a[1][:, None] >= b[0]), axis=-1)
         return inside
     # Row by row of one axis: numbers that lie side by side compare in half the time.
     low_a, high_a, low_b, high_b = (np.ascontiguousarray(corner.T) for corner in (*a, *b))
@@ -165,15 +165,15 @@ def overlaps(a: Boxes, b: Boxes) -> Bools:
     apart = (np.abs(offset) > a.half + np.einsum("...ij,...j->...i", reach, b.half)).any(-1)
     along_b = np.abs(np.einsum("...i,...ij->...j", offset, turn))
     apart |= (along_b > b.half + np.einsum("...i,...ij->...j", a.half, reach)).any(-1)
-    found: Bools = ~apart
+    found: Bools = ~apart.reshape(-1)
     # Boxes with an axis in common are apart along a face normal, or not at all.
-    skew = np.nonzero((found & (reach < 1).all((-1, -2))).reshape(-1))[0]
+    skew = np.nonzero(found & (reach < 1).all((-1, -2)).reshape(-1))[0]
     if len(skew):
-        found.reshape(-1)[skew] = ~_edges_apart(
+        found[skew] = ~_edges_apart(
             a.half.reshape(-1, 3)[skew], b.half.reshape(-1, 3)[skew], offset.reshape(-1, 3)[skew],
             turn.reshape(-1, 3, 3)[skew], reach.reshape(-1, 3, 3)[skew],
         )  # fmt: skip
-    return found
+    return found.reshape(apart.shape)
 
 
 def _edges_apart(half_a: Array, half_b: Array, offset: Array, turn: Array, reach: Array) -> Bools:

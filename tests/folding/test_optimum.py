@@ -60,6 +60,7 @@ def test_it_finds_what_greedy_misses(problem: Make, crowded: tuple[Part, ...]) -
 def test_what_a_unit_tried_in_vain_is_learned_once_and_changes_no_optimum(
     problem: Make, three_in_a_row: tuple[Part, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr("foldfab.folding.solve.bottom_up", lambda *_: None)
     groups: list[Group] = []
     pose = optimum._group
     monkeypatch.setattr(optimum, "_group", lambda *given: groups.append(pose(*given)) or groups[-1])
@@ -156,9 +157,10 @@ def box_of_things(
 def test_on_random_furniture_it_lies_between_its_bound_and_greedy_and_equals_brute_force(
     scaffold: Callable[..., Scaffold], board_at: Callable[..., Part], wall_at: Callable[..., Part],
     box: Callable[..., Part], make: Callable[..., tuple[Part, ...]], slanting: bool, seeds: list[int],
-    least_better: int,
+    least_better: int, monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
     """What counts is the weight of the search: a deletion counts more than its cost."""
+    monkeypatch.setattr("foldfab.folding.solve.bottom_up", lambda *_: None)
     options = {"slanting": slanting, "shrink_steps": 2, "max_hinges": 1}
     compared = better = 0
     for seed in seeds:
@@ -196,8 +198,9 @@ def three_in_a_row(
 
 
 def test_it_is_strictly_cheaper_where_greedy_takes_the_wrong_of_two_equal_ways(
-    solution: Callable[..., FoldSolution], three_in_a_row: tuple[Part, ...]
+    solution: Callable[..., FoldSolution], three_in_a_row: tuple[Part, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr("foldfab.folding.solve.bottom_up", lambda *_: None)
     first, best = (
         solution(three_in_a_row, shrink_steps=2, max_hinges=1, ordering=how) for how in ("greedy", "optimal")
     )

@@ -164,7 +164,7 @@ def test_without_surroundings_only_the_outline_is_in_the_way(problem: Make, besi
     room = unhindered(made, own)
     assert room.lanes == own.plain and not any(b.any() for b in room.blocked.values())
     deep = problem("deep_box")
-    own = repertoire(deep, deep.unit_of["back"])
+    own = whole(deep, deep.unit_of["back"])
     blocked = unhindered(deep, own).blocked
     assert {x.number for x in own.lanes if blocked[x.number].all()} == {x.number for x in own.lanes if x.is_out}
 

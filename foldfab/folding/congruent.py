@@ -43,15 +43,22 @@ class Pose:
 def repertoire(problem: Problem, unit: Unit) -> Repertoire:
     """What the patches of a unit can do, made once for all its copies."""
     if unit not in problem.repertoires:
-        now = pose(problem, unit)
-        known: tuple[Repertoire, Pose] | None = problem.poses.get(now.signature)
-        made = copied(problem, known[0], known[1], unit, now) if known else made_from_scratch(problem, unit)
-        if not known:
-            set_aside(problem, made)
-        problem.poses.setdefault(now.signature, (made, now))
-        problem.repertoires[unit] = made
+        problem.repertoires[unit] = _made(problem, unit)
     found: Repertoire = problem.repertoires[unit]
     return found
+
+
+def _made(problem: Problem, unit: Unit) -> Repertoire:
+    # A unit by itself has no copies.
+    now = pose(problem, unit) if len(problem.units) > 1 else None
+    known: tuple[Repertoire, Pose] | None = problem.poses.get(now.signature) if now is not None else None
+    if now is not None and known is not None:
+        return copied(problem, *known, unit, now)
+    made = made_from_scratch(problem, unit)
+    set_aside(problem, made)
+    if now is not None:
+        problem.poses[now.signature] = made, now
+    return made
 
 
 def pose(problem: Problem, unit: Unit) -> Pose:

@@ -10,7 +10,8 @@ import numpy as np
 
 from foldfab.folding import basic, press
 from foldfab.folding.balance import agree, filled, stack, sunk
-from foldfab.folding.basic import Option
+from foldfab.folding.basic import Option, Variant
+from foldfab.folding.congruent import repertoire
 from foldfab.folding.mechanism import peak
 from foldfab.folding.model import Chain
 from foldfab.folding.options import Alike
@@ -184,7 +185,6 @@ def _balanced(
     plinth under its last hinge.
     """
     clear = {pair: clear_height(problem, *pair) for pair in _pairs(problem, unit, around)}
-    thick = problem.thickness
     stacks = {p: stack(problem, p, o.variant) for p, o in chosen.items() if o.variant is not None}
     least = {pair: clear[pair] - flat for pair, (flat, _, _) in around.limits.items() if np.isfinite(flat)}
     for patch, height in stacks.items():
@@ -200,8 +200,7 @@ def _balanced(
         if site.far is not None:
             slack = clear[site.anchor, site.far] - (way[site.far] - way[site.anchor]) - stacks[patch]
             variant = filled(variant, slack, site.panel, by_thickness=by_thickness)
-        span = basic.window_span(site, chosen[patch].window, problem.options.shrink_steps, thick)
-        chain = basic.chain(site, variant, span, thick) if span is not None else None
+        chain = _chain(problem, unit, patch, variant, chosen[patch].window)
         if chain is None or sum(max(pad, 0.0) for pad in variant.pads) > PAD_SHARE * site.clear:
             highest = max((p for p in stacks if problem.sites[p].far == site.far), key=lambda p: (stacks[p], p))
             blamed = (patch,) if highest == patch else (patch, highest)
@@ -209,6 +208,16 @@ def _balanced(
             return Clash((blamed,), text, holds_for="any window", is_unlike=True)
         chains.append(chain)
     return tuple(chains), way
+
+
+def _chain(problem: Problem, unit: Unit, patch: str, variant: Variant, window: tuple[int, int]) -> Chain | None:
+    """The chain of a variant in a window, or None where panels would be too short."""
+    site, steps = problem.sites[patch], problem.options.shrink_steps
+    known = repertoire(problem, unit).by_variant.get((patch, variant)) if window == (0, steps) else None
+    if known is not None:
+        return known.chain
+    span = basic.window_span(site, window, steps, problem.thickness)
+    return basic.chain(site, variant, span, problem.thickness) if span is not None else None
 
 
 def _pairs(problem: Problem, unit: Unit, around: Surroundings) -> set[tuple[str, str]]:

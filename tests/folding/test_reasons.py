@@ -56,6 +56,12 @@ def test_who_needs_more_hinges_says_what_fewer_would_meet(solution: Solve) -> No
     assert reasons(solution("deep_box"))["back"] == "because with fewer hinges it would meet the bounding box"
 
 
+def test_who_cannot_slant_beside_others_says_beside_whom(solution: Solve) -> None:
+    assert reasons(solution("corner")) == {
+        "back": "because it can slant only without side", "side": "because it can slant only without back"
+    }  # fmt: skip
+
+
 def test_a_refusal_tells_what_simulations_have_shown(problem: Make) -> None:
     made = problem("h_scaffold")
     own = repertoire(made, made.unit_of["leg"])

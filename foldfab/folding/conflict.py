@@ -46,15 +46,15 @@ def compare(problem: Problem, own: Repertoire, many: Iterable[Lane]) -> None:
         _learn(own, _regions_met(problem, own, fresh, known, cuts, same, once))
         known, fresh = [], []
     for section in range(own.nominal.sections):
-        moving = swept(problem, own, fresh, section)
-        others = swept(problem, own, known, section)
+        whole = [swept(problem, own, many, section) for many in (fresh, known)]
+        moving, others = (_parted(own, x) if x is not None else None for x in whole)
         pairs = [(moving, moving, once), (moving, others, same)]
         if own.nominal.sections > 1:
             pairs += [(moving, _beside(problem, own, [*fresh, *known], fresh, section), same)]
             pairs += [(others, _beside(problem, own, fresh, known, section), same)]
         for a, b, apart in pairs:
             if a is not None and b is not None:
-                _learn(own, conflicts(_parted(own, a), _parted(own, b), cuts, apart))
+                _learn(own, conflicts(a, b, cuts, apart))
     for number, y in plain.items():
         own.plain_of[number] = y.number if y is not None else number
     if own.sheets:
@@ -202,7 +202,8 @@ def _beside(problem: Problem, own: Repertoire, many: list[Lane], moving: list[La
     """Those of `many` that stand still in a section on bases of those that fold in it."""
     touched = {b for x in moving if section in x.active for b in (x.chain.anchor, x.chain.far)}
     near = [x for x in many if x.chain.anchor in touched or x.chain.far in touched]
-    return resting(problem, own, near, section)
+    found = resting(problem, own, near, section)
+    return _parted(own, found) if found is not None else None
 
 
 def _never_compared(own: Repertoire, fresh: list[Lane]) -> tuple[Bools, Bools]:

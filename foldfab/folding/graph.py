@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
 from foldfab.folding.basic import Option
 from foldfab.folding.choose import Combination, cheaper, cheapest
 from foldfab.folding.conflict import compare, modes, neighbours, table, windows_table
-from foldfab.folding.options import options_of
+from foldfab.folding.options import Options, options_of
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import Prospects
 from foldfab.folding.realise import Clash
@@ -46,7 +46,7 @@ class Graph:
         self.costs: list[Array] = [o.weight.copy() for o in self.options]
         self.tables: dict[tuple[int, int], Bools] = {}
         in_modes = len(self.patches) > MANY and any(x.drag is not None for x in own.lanes)
-        self.modes: list[list[Bools]] = self._modes(modes(own, found.lanes)) if in_modes else []
+        self.modes: list[list[Bools]] = _masks(self.options, modes(own, found.lanes)) if in_modes else []
         if len(self.patches) > 1:
             self._compare(problem, own, found, in_modes=in_modes, is_bare=is_bare)
         self._treat_alike(problem, chosen or {})
@@ -144,15 +144,6 @@ class Graph:
         drags = np.repeat([x.drag is not None for x in options.lanes], len(options.windows))
         return np.where(np.append(drags, False), np.inf, self.costs[group])
 
-    def _modes(self, lanes: list[set[int]]) -> list[list[Bools]]:
-        """For each way to drag the bases, which options of each patch (n,) go along; deletion always does."""
-        made = []
-        for mode in lanes:
-            alike = [[x.number in mode for x in o.lanes] for o in self.options]
-            masks = [np.repeat(own, len(o.windows)) for own, o in zip(alike, self.options, strict=True)]
-            made.append([np.append(mask, True).astype(bool) for mask in masks])
-        return made
-
     def weight(self, picked: tuple[int, ...]) -> float:
         """What a choice counts in the search."""
         return float(sum(o.weight[i] for o, i in zip(self.options, picked, strict=True)))
@@ -178,6 +169,16 @@ class Graph:
                 self.tables[g, h] = own
             else:
                 self.forbidden.add(tuple((g, tuple(many)) for g, many in zip(groups, alike, strict=True)))
+
+
+def _masks(options: Sequence[Options], modes: list[set[int]]) -> list[list[Bools]]:
+    """For each way to drag the bases, which options of each patch (n,) go along; deletion always does."""
+    made = []
+    for mode in modes:
+        alike = [[x.number in mode for x in o.lanes] for o in options]
+        masks = [np.repeat(own, len(o.windows)) for own, o in zip(alike, options, strict=True)]
+        made.append([np.append(mask, True).astype(bool) for mask in masks])
+    return made
 
 
 def _without_last(table: Bools, pair: tuple[int, int], last: Mapping[int, int]) -> Bools:

@@ -47,14 +47,9 @@ def crossings(scaffold: Scaffold, chains: Sequence[Chain]) -> tuple[tuple[str, s
     """The pairs of patches of one unit that fold in place and cross as sheets, each in the order of names, sorted."""
     held = [c for c in chains if c.far is not None and c.mechanism == "in-place"]
     played = sheets(scaffold, held) if len(held) > 1 else None
-    found: set[tuple[str, str]] = set()
-    if played is not None:
-        many, never = played
-        for frame, i, j in meetings(many, many, never):
-            deep = _depth(many.boxes[frame, i], many.boxes[frame, j]) > DEPTH
-            pairs = set(zip(many.lane[i[deep]].tolist(), many.lane[j[deep]].tolist(), strict=True))
-            found |= {(held[a].patch, held[b].patch) for a, b in pairs}
-    return tuple(sorted((min(pair), max(pair)) for pair in found))
+    found = crossing(played[0], *played) if played is not None else ()
+    pairs = {(held[i].patch, held[j].patch) for i, j in found}
+    return tuple(sorted((min(pair), max(pair)) for pair in pairs))
 
 
 def swings_into(scaffold: Scaffold, chain: Chain, standing: Sequence[Site]) -> tuple[str, ...]:
@@ -62,23 +57,44 @@ def swings_into(scaffold: Scaffold, chain: Chain, standing: Sequence[Site]) -> t
 
     What lies folded there lies in the plane in which the T ends. Whatever the base does, they move with it.
     """
-    patch, low = scaffold.patch(chain.patch), scaffold.base(chain.anchor).bottom
-    tip = float(patch.center[2] + chain.rise[2] * abs(patch.up[2]) * patch.length / 2)
-    count, length = len(chain.lengths), abs(tip - low) / np.cos(chain.lean)
-    near = [s for s in standing if abs((s.patch.center - chain.root) @ chain.across) < length / count + s.patch.length]
+    (low, tip), count = ends_of(scaffold, chain), len(chain.lengths)
+    panel = abs(tip - low) / np.cos(chain.lean) / count
+    near = [s for s in standing if abs((s.patch.center - chain.root) @ chain.across) < panel + s.patch.length]
     if not near:
         return ()
-    sheet = replace(
-        chain, root=_foot(chain, low), lengths=np.full(count, length / count), offsets=np.zeros(count + 1), pads=(0, 0)
-    )
-    swung = batch(_boxes(sheet, np.linspace(0.0, 1.0, FRAMES + 1)[:-1], 0.0), np.zeros(count, dtype=np.int64))
+    swings = panels(sheet(scaffold, chain), np.linspace(0.0, 1.0, FRAMES + 1)[:-1])
+    swung = batch(swings, np.zeros(count, dtype=np.int64))
     still = stacked([_open(site) for site in near])
     stood = batch(Boxes(still.center[None], still.axes[None], still.half[None]), np.arange(len(near)))
-    found: set[str] = set()
-    for frame, i, j in meetings(swung, stood):
-        deep = _depth(swung.boxes[frame, i], stood.boxes[0, j]) > DEPTH
-        found |= {near[k].patch.name for k in j[deep].tolist()}
-    return tuple(sorted(found))
+    return tuple(sorted({near[j].patch.name for _, j in crossing(swung, stood)}))
+
+
+def crossing(a: Batch, b: Batch, never: Bools | None = None) -> set[tuple[int, int]]:
+    """Which sheets of two batches, by their numbers, share more than a touch; some (n, m) are `never` compared."""
+    found: set[tuple[int, int]] = set()
+    for frame, i, j in meetings(a, b, never):
+        deep = depth(a.boxes[frame, i], b.boxes[frame if len(b.low) > 1 else np.zeros_like(frame), j]) > DEPTH
+        found |= set(zip(a.lane[i[deep]].tolist(), b.lane[j[deep]].tolist(), strict=True))
+    return found
+
+
+def sheet(scaffold: Scaffold, chain: Chain) -> Chain:
+    """The chain as a sheet, from the plane of its base to that of its far base or to the tip of its patch."""
+    low, high = ends_of(scaffold, chain)
+    if chain.far is not None and chain.mechanism == "in-place":
+        return _sheet(chain, {chain.anchor: low, chain.far: high})
+    count = len(chain.lengths)
+    lengths = np.full(count, abs(high - low) / np.cos(chain.lean) / count)
+    return replace(chain, root=_foot(chain, low), lengths=lengths, offsets=np.zeros(count + 1), pads=(0.0, 0.0))
+
+
+def ends_of(scaffold: Scaffold, chain: Chain) -> tuple[float, float]:
+    """Heights of a chain's base and of its far base or its tip as a sheet, mm."""
+    low = scaffold.base(chain.anchor).bottom
+    if chain.far is not None:
+        return low, scaffold.base(chain.far).bottom
+    patch = scaffold.patch(chain.patch)
+    return low, float(patch.center[2] + chain.rise[2] * abs(patch.up[2]) * patch.length / 2)
 
 
 def sheets(scaffold: Scaffold, held: Sequence[Chain], rim: float = 0.0) -> tuple[Batch, Bools] | None:
@@ -159,14 +175,14 @@ def _played(sheets: Mapping[int, Chain], down: Mapping[str, float], rim: float) 
     many: list[Boxes] = []
     for i, sheet in sheets.items():
         near, far = (np.maximum(down[name] - press, 0.0) for name in (sheet.anchor, sheet.far or ""))
-        boxes = _boxes(sheet, follow_down(sheet, far - near), rim)
+        boxes = panels(sheet, follow_down(sheet, far - near), rim)
         boxes.center[..., 2] += i * LAYER - near[:, None]
         many.append(boxes)
     whole = Boxes(*(np.concatenate([getattr(b, of) for b in many], axis=1) for of in ("center", "axes", "half")))
     return batch(whole, np.repeat(list(sheets), [len(sheet.lengths) for sheet in sheets.values()]))
 
 
-def _boxes(sheet: Chain, progress: Array, rim: float) -> Boxes:
+def panels(sheet: Chain, progress: Array, rim: float = 0.0) -> Boxes:
     """The panels (k, m) of a sheet at each progress (k,), seen from its anchor, `rim` mm narrower all around."""
     origin, turned = frames(sheet, progress)
     middle = origin + turned[:, :, 2] * (sheet.lengths[:, None] / 2) + sheet.along * float(sheet.span.mean())
@@ -175,7 +191,7 @@ def _boxes(sheet: Chain, progress: Array, rim: float) -> Boxes:
     return Boxes(middle, turned, half)
 
 
-def _depth(a: Boxes, b: Boxes) -> Array:
+def depth(a: Boxes, b: Boxes) -> Array:
     """(n,) the least way that would part two collections pair by pair, mm; less than 0 where they are apart."""
     crossed = np.cross(a.axes[:, :, None], b.axes[:, None]).reshape(-1, 9, 3)
     size = np.linalg.norm(crossed, axis=-1)

@@ -16,13 +16,14 @@ from foldfab.folding.model import FoldSolution, Modification, Step, Thickness
 from foldfab.folding.optimum import NO_MORE, lower_bound, optimal
 from foldfab.folding.options import DELETION
 from foldfab.folding.ordering import Ordered, floors, greedy, travel
-from foldfab.folding.problem import Problem, without
+from foldfab.folding.problem import Problem, kept_clear, without
 from foldfab.folding.rehearsal import first_clash
 from foldfab.folding.scene import Scene, open_scene
 from foldfab.folding.site import sites, slab
 from foldfab.folding.soundness import disconnected, rigid_patches
 from foldfab.folding.symmetry import twins
 from foldfab.folding.tree import unit_tree
+from foldfab.folding.trespass import trespasses
 from foldfab.folding.unit_fold import Choice, UnitFold
 from foldfab.folding.units import decompose
 from foldfab.folding.work import Work
@@ -84,11 +85,12 @@ def _solved(problem: Problem, most: int | None, worth: int | None) -> FoldSoluti
         least = bound if least is None else least
         bound = min(bound, least)
         met = first_clash(problem, scene, ordered.folds)
-        if met is None:
+        crossed = trespasses(problem, ordered.folds) if met is None else {}
+        if met is None and not crossed:
             return solution(problem, bound, ordered)
-        problem = without(problem, problem.banned | {met})
+        problem = without(problem, problem.banned | {met}) if met else kept_clear(problem, crossed)
         choices = floors(problem)
-    told = ", ".join(sorted({patch for patch, _ in problem.banned}))
+    told = ", ".join(sorted({patch for patch, _ in (*problem.banned, *problem.crossed)}))
     raise FoldingError(f"no folding solution found: {told} stay in the way of what folds before; try another thickness")
 
 

@@ -11,10 +11,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from foldfab.folding.sheets import DEPTH, depth
 from foldfab.geometry.arrays import Array, Bools
 from foldfab.geometry.boxes import Boxes, bounds
 
+DEPTH = 0.05
+"""How much sheets may share, mm: a layer of a print."""
+SKEW = 1e-5
+"""Edges whose cross product is shorter than this are parallel and make no axis of their own."""
 Moving = Callable[[Array], Boxes]
 """Where some sheets (k, n) are at times (k,)."""
 FINER = 8
@@ -57,3 +60,15 @@ def _deep(a: Boxes, b: Boxes, moved: Array) -> Array:
     if len(frame):
         deep[frame, i, j] = depth(a[frame, i], b[frame, j])
     return deep
+
+
+def depth(a: Boxes, b: Boxes) -> Array:
+    """(n,) the least way that would part two collections pair by pair, mm; less than 0 where they are apart."""
+    crossed = np.cross(a.axes[:, :, None], b.axes[:, None]).reshape(-1, 9, 3)
+    size = np.linalg.norm(crossed, axis=-1)
+    axes = np.concatenate([a.axes, b.axes, crossed / np.maximum(size, SKEW)[..., None]], axis=1)
+    reach = sum(np.einsum("nmk,nk->nm", np.abs(np.einsum("nmj,nkj->nmk", axes, c.axes)), c.half) for c in (a, b))
+    shared = reach - np.abs(np.einsum("nij,nj->ni", axes, b.center - a.center))
+    shared[:, 6:][size < SKEW] = np.inf
+    least: Array = shared.min(axis=1)
+    return least

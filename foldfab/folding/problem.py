@@ -29,6 +29,8 @@ class Crossed:
     """(N_s,) which pieces of the patch do."""
     by: tuple[str, ...]
     """The owners of what they cross, sorted."""
+    is_always: bool = False
+    """Whether they do in whatever order the units fold."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,8 +67,8 @@ class Problem:
     """What the patches of each unit can do, by unit."""
     poses: dict[object, Any] = field(default_factory=dict)
     """The first unit of each kind, by what it looks like wherever it stands."""
-    least: dict[Unit, float] = field(default_factory=dict)
-    """What the cheapest choice of each unit counts, whatever stands around it."""
+    least: dict[Unit, Any] = field(default_factory=dict)
+    """The cheapest choice of each unit, whatever stands around it."""
     solved: dict[tuple[Any, ...], Any] = field(default_factory=dict)
     """Solutions of units, by all that they depend on: first the key of the surroundings, which begins with the unit."""
     begun: dict[tuple[Any, ...], Any] = field(default_factory=dict)
@@ -101,7 +103,7 @@ def kept_clear(problem: Problem, crossed: Mapping[tuple[str, Variant], Crossed])
     for key, more in crossed.items():
         known = merged.get(key, more)
         pieces = tuple(a or b for a, b in zip(known.pieces, more.pieces, strict=True))
-        merged[key] = Crossed(pieces, tuple(sorted({*known.by, *more.by})))
+        merged[key] = Crossed(pieces, tuple(sorted({*known.by, *more.by})), known.is_always and more.is_always)
     touched = {problem.unit_of[patch] for patch, _ in crossed}
     own = {u: replace(known, least={}) if u in touched else known for u, known in problem.repertoires.items()}
     return replace(_forgetting(problem, touched), crossed=merged, repertoires=own)
@@ -120,7 +122,7 @@ def _forgetting(problem: Problem, touched: set[Unit]) -> Problem:
         problem,
         solved={key: found for key, found in problem.solved.items() if key[0][0] in kept},
         begun={key: found for key, found in problem.begun.items() if key[0][0] in kept},
-        least={unit: value for unit, value in problem.least.items() if unit in kept},
+        least={unit: choice for unit, choice in problem.least.items() if unit in kept},
         hopeless={unit: why for unit, why in problem.hopeless.items() if unit in kept},
     )  # fmt: skip
 

@@ -16,23 +16,21 @@ from dataclasses import replace
 
 import numpy as np
 
+from foldfab.folding.closeness import DEPTH, crossing, depth
 from foldfab.folding.mechanism import frames
 from foldfab.folding.model import Chain
 from foldfab.folding.press import follow_down
 from foldfab.folding.site import Site
-from foldfab.folding.space import Batch, batch, meetings
+from foldfab.folding.space import Batch, batch, meetings, still
 from foldfab.geometry.arrays import Array, Bools
 from foldfab.geometry.boxes import Boxes, near_pairs, stacked
 from foldfab.geometry.rotation import cross
-from foldfab.scaffold.model import Scaffold
+from foldfab.scaffold.model import BasePatch, Scaffold
 
-DEPTH = 0.05
-"""How much sheets may share, mm: a layer of a print."""
+UP = np.array([0.0, 0.0, 1.0])
 RIM = 0.5
 """What is left out along all edges where nothing may be ruled out that is not that deep, mm: in their last few degrees
 sheets share little, however far they cross."""
-SKEW = 1e-5
-"""Edges whose cross product is shorter than this are parallel and make no axis of their own."""
 FRAMES = 48
 """Instants at which sheets are looked at while those between two bases fold, by even turns."""
 LAYER = 1e-6
@@ -47,35 +45,34 @@ def crossings(scaffold: Scaffold, chains: Sequence[Chain]) -> tuple[tuple[str, s
     """The pairs of patches of one unit that fold in place and cross as sheets, each in the order of names, sorted."""
     held = [c for c in chains if c.far is not None and c.mechanism == "in-place"]
     played = sheets(scaffold, held) if len(held) > 1 else None
-    found = crossing(played[0], *played) if played is not None else ()
-    pairs = {(held[i].patch, held[j].patch) for i, j in found}
-    return tuple(sorted((min(pair), max(pair)) for pair in pairs))
+    found: set[tuple[str, str]] = set()
+    if played is not None:
+        many, never = played
+        for frame, i, j in meetings(many, many, never):
+            deep = depth(many.boxes[frame, i], many.boxes[frame, j]) > DEPTH
+            pairs = set(zip(many.lane[i[deep]].tolist(), many.lane[j[deep]].tolist(), strict=True))
+            found |= {(held[a].patch, held[b].patch) for a, b in pairs}
+    return tuple(sorted((min(pair), max(pair)) for pair in found))
 
 
-def swings_into(scaffold: Scaffold, chain: Chain, standing: Sequence[Site]) -> tuple[str, ...]:
-    """The patches, sorted, that stand unfolded on the base of a T-scaffold and that it crosses as a sheet.
+def swings_into(
+    scaffold: Scaffold, chain: Chain, standing: Sequence[Site], bases: Sequence[BasePatch] = ()
+) -> tuple[str, ...]:
+    """The patches, sorted, that stand unfolded on the base of a T-scaffold and that it crosses as a sheet; and bases
+    that do not move against its own.
 
     What lies folded there lies in the plane in which the T ends. Whatever the base does, they move with it.
     """
     (low, tip), count = ends_of(scaffold, chain), len(chain.lengths)
     panel = abs(tip - low) / np.cos(chain.lean) / count
-    near = [s for s in standing if abs((s.patch.center - chain.root) @ chain.across) < panel + s.patch.length]
-    if not near:
+    beside = [(s.patch.name, _open(s)) for s in standing if _is_near(s.patch.center, s.patch.length, chain, panel)]
+    passed = [b for b in bases if min(low, tip) + DEPTH < b.bottom < max(low, tip) - DEPTH]
+    beside += [(b.name, outlines(b)[i : i + 1]) for b in passed for i, o in enumerate(b.outlines) if _is_near(np.append(o.center, 0.0), float(o.half.sum()), chain, panel)]
+    if not beside:
         return ()
-    swings = panels(sheet(scaffold, chain), np.linspace(0.0, 1.0, FRAMES + 1)[:-1])
-    swung = batch(swings, np.zeros(count, dtype=np.int64))
-    still = stacked([_open(site) for site in near])
-    stood = batch(Boxes(still.center[None], still.axes[None], still.half[None]), np.arange(len(near)))
-    return tuple(sorted({near[j].patch.name for _, j in crossing(swung, stood)}))
-
-
-def crossing(a: Batch, b: Batch, never: Bools | None = None) -> set[tuple[int, int]]:
-    """Which sheets of two batches, by their numbers, share more than a touch; some (n, m) are `never` compared."""
-    found: set[tuple[int, int]] = set()
-    for frame, i, j in meetings(a, b, never):
-        deep = depth(a.boxes[frame, i], b.boxes[frame if len(b.low) > 1 else np.zeros_like(frame), j]) > DEPTH
-        found |= set(zip(a.lane[i[deep]].tolist(), b.lane[j[deep]].tolist(), strict=True))
-    return found
+    own, stood = sheet(scaffold, chain), stacked([boxes for _, boxes in beside])
+    met = crossing(lambda s: panels(own, s), lambda s: still(stood, len(s)), np.linspace(0.0, 1.0, FRAMES + 1))
+    return tuple(sorted({beside[j][0] for j in np.nonzero(met.any(0))[0].tolist()}))
 
 
 def sheet(scaffold: Scaffold, chain: Chain) -> Chain:
@@ -111,6 +108,19 @@ def sheets(scaffold: Scaffold, held: Sequence[Chain], rim: float = 0.0) -> tuple
     low = min(height.values())
     down = {name: z - low for name, z in height.items()}
     return _played({i: _sheet(held[i], height) for i in near}, down, rim), ~meet
+
+
+def _is_near(middle: Array, reach: float, chain: Chain, panel: float) -> bool:
+    """Whether what reaches that far around its middle comes as near to a chain's base hinge as a panel is long."""
+    return abs(float((middle - chain.root) @ chain.across)) < panel + reach
+
+
+def outlines(base: BasePatch) -> Boxes:
+    """The outlines (n,) of a base in its plane."""
+    center = np.array([[*outline.center, base.bottom] for outline in base.outlines])
+    half = np.array([[*outline.half, 0.0] for outline in base.outlines])
+    axes = np.array([[[x, y, 0.0], [-y, x, 0.0], UP] for x, y in (outline.along for outline in base.outlines)])
+    return Boxes(center, axes, half)
 
 
 def _share_room(held: Sequence[Chain], height: Mapping[str, float]) -> Bools:
@@ -189,18 +199,6 @@ def panels(sheet: Chain, progress: Array, rim: float = 0.0) -> Boxes:
     half = np.zeros_like(middle)
     half[..., 1], half[..., 2] = float(np.ptp(sheet.span)) / 2 - rim, sheet.lengths / 2 - rim
     return Boxes(middle, turned, half)
-
-
-def depth(a: Boxes, b: Boxes) -> Array:
-    """(n,) the least way that would part two collections pair by pair, mm; less than 0 where they are apart."""
-    crossed = np.cross(a.axes[:, :, None], b.axes[:, None]).reshape(-1, 9, 3)
-    size = np.linalg.norm(crossed, axis=-1)
-    axes = np.concatenate([a.axes, b.axes, crossed / np.maximum(size, SKEW)[..., None]], axis=1)
-    reach = sum(np.einsum("nmk,nk->nm", np.abs(np.einsum("nmj,nkj->nmk", axes, c.axes)), c.half) for c in (a, b))
-    shared = reach - np.abs(np.einsum("nij,nj->ni", axes, b.center - a.center))
-    shared[:, 6:][size < SKEW] = np.inf
-    least: Array = shared.min(axis=1)
-    return least
 
 
 def _press(pairs: Sequence[tuple[float, float]]) -> Array:

@@ -77,17 +77,18 @@ def _solved(problem: Problem, most: int | None, worth: int | None) -> FoldSoluti
     require_variants(problem)
     require_allowed(problem)
     _require_worth(choices, most)
-    least: float | None = None
+    most_proven = np.inf
     for _ in range(REHEARSALS):
         scene = open_scene(problem)
         ordered, bound = _ordered(problem, scene, choices, worth)
-        # What a rehearsal forbids belongs to one order; the bound is over all options.
-        least = bound if least is None else least
-        bound = min(bound, least)
+        bound = min(bound, most_proven)
         met = first_clash(problem, scene, ordered.folds)
         crossed = trespasses(problem, ordered.folds) if met is None else {}
         if met is None and not crossed:
             return solution(problem, bound, ordered)
+        if not crossed or not all(c.is_always for c in crossed.values()):
+            # What a rehearsal forbids belongs to one order; the bound is over all options.
+            most_proven = bound
         problem = without(problem, problem.banned | {met}) if met else kept_clear(problem, crossed)
         choices = floors(problem)
     told = ", ".join(sorted({patch for patch, _ in (*problem.banned, *problem.crossed)}))

@@ -13,12 +13,10 @@ import numpy as np
 
 from foldfab.folding.mechanism import frames
 from foldfab.folding.model import Chain
-from foldfab.folding.sheets import ends_of, sheet
+from foldfab.folding.sheets import UP, ends_of, outlines, sheet
 from foldfab.geometry.arrays import Array, Indices
 from foldfab.geometry.boxes import Boxes, bounds, stacked
-from foldfab.scaffold.model import BasePatch, Scaffold
-
-UP = np.array([0.0, 0.0, 1.0])
+from foldfab.scaffold.model import Scaffold
 
 
 @dataclass(slots=True, eq=False)
@@ -55,7 +53,7 @@ class Spread:
 def spread(scaffold: Scaffold, chains: Sequence[Chain]) -> Spread:
     """The open furniture whose patches will fold by these chains."""
     number = {base.name: i for i, base in enumerate(scaffold.bases)}
-    plates = [_plate(base) for base in scaffold.bases]
+    plates = [outlines(base) for base in scaffold.bases]
     counts = [len(plate) for plate in plates]
     opened, flat, swept, hung = _patches(scaffold, chains)
     boxes = stacked([*plates, opened])
@@ -65,14 +63,6 @@ def spread(scaffold: Scaffold, chains: Sequence[Chain]) -> Spread:
     owner += [c.patch for c in chains]
     still = np.zeros((len(number), 3))
     return Spread(owner, base.astype(np.int64), boxes, low, high, still, sum(counts), flat, swept, hung)
-
-
-def _plate(base: BasePatch) -> Boxes:
-    """The outlines (n,) of a base in its plane."""
-    center = np.array([[*outline.center, base.bottom] for outline in base.outlines])
-    half = np.array([[*outline.half, 0.0] for outline in base.outlines])
-    axes = np.array([[[x, y, 0.0], [-y, x, 0.0], UP] for x, y in (outline.along for outline in base.outlines)])
-    return Boxes(center, axes, half)
 
 
 def _patches(

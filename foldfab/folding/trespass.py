@@ -16,11 +16,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from foldfab.folding.basic import Variant
-from foldfab.folding.closeness import Moving, crossing
+from foldfab.folding.closeness import DEPTH, Moving, crossing
 from foldfab.folding.model import Chain
 from foldfab.folding.press import follow_down
 from foldfab.folding.problem import Crossed, Problem, as_sheet
-from foldfab.folding.sheets import DEPTH, FRAMES, ends_of, panels, sheet
+from foldfab.folding.sheets import FRAMES, ends_of, panels, sheet
 from foldfab.folding.spread import Spread, spread
 from foldfab.folding.unit_fold import UnitFold
 from foldfab.geometry.arrays import Array, Bools, Indices
@@ -105,9 +105,8 @@ def _moves(step: _Step, local: Array) -> Array:
 
 
 def _moments(step: _Step) -> Array:
-    """The unit's own time (k,); the end, where all lies flat, left out."""
-    count = FRAMES * max(len(np.unique(step.height)) - 1, 1)
-    return np.arange(count) / count
+    """The unit's own time (k,) from 0 to 1."""
+    return np.linspace(0.0, 1.0, FRAMES * max(len(np.unique(step.height)) - 1, 1) + 1)
 
 
 def _crossed(problem: Problem, table: Spread, step: _Step) -> Found:
@@ -151,10 +150,13 @@ def _crossed_by(problem: Problem, table: Spread, step: _Step, chain: Chain, othe
         return {}
     within = (c for c in _pieces(problem, chain))
     pieces = tuple(c is not None and bool(_meets(problem, table, step, c, others[met]).any()) for c in within)
+    owners = {table.owner[j] for j in others[met]}
+    # Where the unit's own bases are is up to nothing else.
+    is_always = any(pieces) and owners <= set(step.fold.unit.bases)
     if not any(pieces):
         # No piece alone is wide enough for it.
         pieces = (True,) * len(pieces)
-    return _blamed(step, [chain], pieces, {table.owner[j] for j in others[met]})
+    return _blamed(step, [chain], Crossed(pieces, tuple(sorted(owners)), is_always))
 
 
 def _meets(problem: Problem, table: Spread, step: _Step, chain: Chain, others: Indices) -> Bools:
@@ -171,12 +173,12 @@ def _meets(problem: Problem, table: Spread, step: _Step, chain: Chain, others: I
     return crossing(swung, _carried(table, step, others), _moments(step))
 
 
-def _blamed(step: _Step, chains: Iterable[Chain], pieces: tuple[bool, ...], owners: Iterable[str]) -> Found:
+def _blamed(step: _Step, chains: Iterable[Chain], crossed: Crossed) -> Found:
     found: Found = {}
     for chain in chains:
         variant = step.fold.chosen[chain.patch].variant
         assert variant is not None
-        found[chain.patch, as_sheet(variant)] = Crossed(pieces, tuple(sorted(owners)))
+        found[chain.patch, as_sheet(variant)] = crossed
     return found
 
 
@@ -196,7 +198,8 @@ def _carried_into(problem: Problem, table: Spread, step: _Step) -> Found:
         if met.any():
             owners = {table.owner[a[i]], *(table.owner[j] for j in others[met])}
             holding = [c for c in step.fold.chains if c.far is not None]
-            return _blamed(step, holding, (True,) * problem.options.shrink_steps, owners)
+            whole = (True,) * problem.options.shrink_steps
+            return _blamed(step, holding, Crossed(whole, tuple(sorted(owners))))
     return {}
 
 

@@ -136,8 +136,14 @@ def fold_alone(problem: Problem, scene: Scene, unit: Unit) -> UnitFold | Refusal
 
 
 def least_choice(problem: Problem, own: Repertoire) -> Choice:
-    """The cheapest choice without conflicts, whatever stands around the unit and however it is played."""
+    """The cheapest choice without conflicts, whatever stands around the unit and however it is played; found once."""
+    if own.unit not in problem.least:
+        problem.least[own.unit] = _least_choice(problem, own)
+    found: Choice = problem.least[own.unit]
+    return found
 
+
+def _least_choice(problem: Problem, own: Repertoire) -> Choice:
     def posed() -> tuple[Prospects, Graph]:
         found = unhindered(problem, own)
         return found, Graph(problem, own, found, np.zeros(3))
@@ -160,8 +166,7 @@ def least_choice(problem: Problem, own: Repertoire) -> Choice:
     if not graph.gaps:
         own.least.update(places)
     # Where the work did not suffice to prove the choice, what it may be too dear by is no part of what must be paid.
-    weight = problem.least[own.unit] = graph.weight(picked) - sum(graph.gaps)
-    return Choice(weight, places)
+    return Choice(graph.weight(picked) - sum(graph.gaps), places)
 
 
 def _chains(problem: Problem, graph: Graph, picked: tuple[int, ...]) -> list[Chain]:
@@ -272,12 +277,13 @@ def _wanted(problem: Problem, own: Repertoire, graph: Graph, picked: tuple[int, 
 
 def _bettering(problem: Problem, own: Repertoire, graph: Graph, weight: float) -> list[str]:
     """The patches with lanes not made yet that could be part of a choice that weighs less."""
-    if weight <= problem.least.get(own.unit, -np.inf):
+    least: Choice | None = problem.least.get(own.unit)
+    if least is not None and weight <= least.weight:
         return []
-    least = {p: _price(problem, p, many[0].variant) if many else np.inf for p, many in own.plain.items()}
-    spare = weight - sum(price for price in least.values() if np.isfinite(price))
+    first = {p: _price(problem, p, many[0].variant) if many else np.inf for p, many in own.plain.items()}
+    spare = weight - sum(price for price in first.values() if np.isfinite(price))
     prices = {p: _price(problem, p, later[0]) for p, later in own.later.items() if later}
-    affordable = {p: price for p, price in prices.items() if price - least[p] < spare}
+    affordable = {p: price for p, price in prices.items() if price - first[p] < spare}
     return graph.promising(affordable, weight) if affordable else []
 
 

@@ -20,6 +20,8 @@ SKEW = 1e-5
 """Edges whose cross product is shorter than this are parallel and make no axis of their own."""
 Moving = Callable[[Array], Boxes]
 """Where some sheets (k, n) are at times (k,)."""
+STEPS = 12
+"""Into how many steps a quarter turn is parted at first."""
 FINER = 8
 """Into how many steps an interval is parted that is looked at again."""
 LEVELS = 3

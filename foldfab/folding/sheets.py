@@ -16,14 +16,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from foldfab.folding.closeness import DEPTH, crossing, depth
+from foldfab.folding.closeness import DEPTH, STEPS, crossing, depth
 from foldfab.folding.mechanism import frames
 from foldfab.folding.model import Chain
 from foldfab.folding.press import follow_down
 from foldfab.folding.site import Site
 from foldfab.folding.space import Batch, batch, meetings, still
 from foldfab.geometry.arrays import Array, Bools
-from foldfab.geometry.boxes import Boxes, near_pairs, stacked
+from foldfab.geometry.boxes import Boxes, bounds, near_pairs, stacked
 from foldfab.geometry.rotation import cross
 from foldfab.scaffold.model import BasePatch, Scaffold
 
@@ -63,16 +63,28 @@ def swings_into(
 
     What lies folded there lies in the plane in which the T ends. Whatever the base does, they move with it.
     """
-    (low, tip), count = ends_of(scaffold, chain), len(chain.lengths)
-    panel = abs(tip - low) / np.cos(chain.lean) / count
-    beside = [(s.patch.name, _open(s)) for s in standing if _is_near(s.patch.center, s.patch.length, chain, panel)]
-    passed = [b for b in bases if min(low, tip) + DEPTH < b.bottom < max(low, tip) - DEPTH]
-    beside += [(b.name, outlines(b)[i : i + 1]) for b in passed for i, o in enumerate(b.outlines) if _is_near(np.append(o.center, 0.0), float(o.half.sum()), chain, panel)]
+    beside = [*((s.patch.name, _open(s)) for s in standing), *((b.name, plate) for b in bases for plate in _split(b))]
     if not beside:
         return ()
-    own, stood = sheet(scaffold, chain), stacked([boxes for _, boxes in beside])
-    met = crossing(lambda s: panels(own, s), lambda s: still(stood, len(s)), np.linspace(0.0, 1.0, FRAMES + 1))
-    return tuple(sorted({beside[j][0] for j in np.nonzero(met.any(0))[0].tolist()}))
+    stood = stacked([boxes for _, boxes in beside])
+    least, most = _swept(scaffold, chain)
+    low, high = bounds(stood)
+    near = np.nonzero(((least + DEPTH < high) & (low < most - DEPTH)).all(1))[0]
+    if not len(near):
+        return ()
+    own, stood = sheet(scaffold, chain), stood[near]
+    met = crossing(lambda s: panels(own, s), lambda s: still(stood, len(s)), np.linspace(0.0, 1.0, STEPS + 1))
+    return tuple(sorted({beside[j][0] for j in near[met.any(0)].tolist()}))
+
+
+def _swept(scaffold: Scaffold, chain: Chain) -> tuple[Array, Array]:
+    """Lower and upper corner (3,) of all that a T-scaffold passes as a sheet."""
+    low, tip = ends_of(scaffold, chain)
+    length, foot = abs(tip - low) / np.cos(chain.lean), _foot(chain, low)
+    sides = [0.0, np.sign(chain.turn) * length / len(chain.lengths)] if chain.lean == 0 else [-length, length]
+    corners = np.array([foot + side * chain.across + end * chain.along for side in sides for end in chain.span])
+    corners = np.concatenate([corners, corners + chain.rise * length])
+    return corners.min(0), corners.max(0)
 
 
 def sheet(scaffold: Scaffold, chain: Chain) -> Chain:
@@ -110,17 +122,18 @@ def sheets(scaffold: Scaffold, held: Sequence[Chain], rim: float = 0.0) -> tuple
     return _played({i: _sheet(held[i], height) for i in near}, down, rim), ~meet
 
 
-def _is_near(middle: Array, reach: float, chain: Chain, panel: float) -> bool:
-    """Whether what reaches that far around its middle comes as near to a chain's base hinge as a panel is long."""
-    return abs(float((middle - chain.root) @ chain.across)) < panel + reach
-
-
 def outlines(base: BasePatch) -> Boxes:
     """The outlines (n,) of a base in its plane."""
     center = np.array([[*outline.center, base.bottom] for outline in base.outlines])
     half = np.array([[*outline.half, 0.0] for outline in base.outlines])
     axes = np.array([[[x, y, 0.0], [-y, x, 0.0], UP] for x, y in (outline.along for outline in base.outlines)])
     return Boxes(center, axes, half)
+
+
+def _split(base: BasePatch) -> list[Boxes]:
+    """The outlines (1,) of a base."""
+    whole = outlines(base)
+    return [whole[i : i + 1] for i in range(len(whole))]
 
 
 def _share_room(held: Sequence[Chain], height: Mapping[str, float]) -> Bools:

@@ -82,9 +82,12 @@ def _patches(
     stood = Boxes(foot + up * length / 2 + middle, np.stack([cos * across - sin * rise, along, up], axis=1), half[0])
     turned = np.stack([np.broadcast_to(UP, across.shape), along, across], axis=1)
     flat = Boxes(foot + across * lies.mean(1)[:, None] + middle, turned, half[1])
-    swept = _passed(foot, across, passes, along, span, np.stack([np.zeros(len(chains)), rise[:, 2] * length[:, 0]], 1))
+    # What swings stands upright once, and comes as high as it is long.
+    straight = np.array([c.far is not None and c.mechanism == "in-place" for c in chains])
+    height = rise[:, 2] * np.where(straight, np.abs(np.diff(ends))[:, 0], length[:, 0])
+    swept = _passed(foot, across, passes, along, span, np.stack([np.zeros(len(chains)), height], axis=1))
     slants = np.array([c.far is not None and c.mechanism == "slanted" for c in chains])
-    back = np.stack([-rise[:, 2] * length[:, 0], np.zeros(len(chains))], axis=1)
+    back = np.stack([-height, np.zeros(len(chains))], axis=1)
     hung = _passed(foot + up * length, across, -passes[:, ::-1], along, span, back)
     hung = tuple(np.where(slants[:, None], far, near) for far, near in zip(hung, swept, strict=True))
     return stood, flat, swept, hung

@@ -16,11 +16,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from foldfab.folding.basic import Variant
-from foldfab.folding.closeness import DEPTH, Moving, crossing
+from foldfab.folding.closeness import DEPTH, STEPS, Moving, crossing
 from foldfab.folding.model import Chain
 from foldfab.folding.press import follow_down
 from foldfab.folding.problem import Crossed, Problem, as_sheet
-from foldfab.folding.sheets import FRAMES, ends_of, panels, sheet
+from foldfab.folding.sheets import ends_of, panels, sheet
 from foldfab.folding.spread import Spread, spread
 from foldfab.folding.unit_fold import UnitFold
 from foldfab.geometry.arrays import Array, Bools, Indices
@@ -106,7 +106,7 @@ def _moves(step: _Step, local: Array) -> Array:
 
 def _moments(step: _Step) -> Array:
     """The unit's own time (k,) from 0 to 1."""
-    return np.linspace(0.0, 1.0, FRAMES * max(len(np.unique(step.height)) - 1, 1) + 1)
+    return np.linspace(0.0, 1.0, STEPS * max(len(np.unique(step.height)) - 1, 1) + 1)
 
 
 def _crossed(problem: Problem, table: Spread, step: _Step) -> Found:
@@ -136,10 +136,12 @@ def _near(problem: Problem, table: Spread, step: _Step) -> tuple[Indices, Indice
     for k in range(3):
         down = lift if k == 2 else 0.0
         near &= (least[k] + DEPTH < high[:, k] - down) & (low[:, k] - down < most[k] - DEPTH)
+    number, plates, patches = problem.tree.number, table.base[: table.first], table.base[table.first :]
     for i, chain in enumerate(step.fold.chains):
+        near[i, : table.first] &= (plates != number[chain.anchor]) & (plates != number[chain.far or chain.anchor])
         if chain.far is None:
             # Those that stand on its own base were asked when it was chosen (`sheets.swings_into`).
-            near[i, table.first :] &= table.base[table.first :] != problem.tree.number[chain.anchor]
+            near[i, table.first :] &= patches != number[chain.anchor]
     return np.nonzero(near)
 
 

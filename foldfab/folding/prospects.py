@@ -86,8 +86,8 @@ def unhindered(problem: Problem, own: Repertoire) -> Prospects:
 
 def ruled_out(problem: Problem, x: Lane) -> Bools:
     """Which pieces (N_s,) of a lane are out of the question wherever it stands."""
-    steps = problem.options.shrink_steps
-    return np.full(steps, x.is_out) | np.array(_crossed(problem, x).pieces) if problem.crossed else np.full(steps, x.is_out)
+    found = np.full(problem.options.shrink_steps, x.is_out)
+    return found | np.array(_crossed(problem, x).pieces) if problem.crossed else found
 
 
 def _crossed(problem: Problem, x: Lane) -> Crossed:

@@ -26,7 +26,6 @@ from foldfab.folding.units import Unit
 from foldfab.folding.work import PLAYING
 from foldfab.geometry.boxes import Boxes
 
-
 SAME = 1e-6
 """What has come no further than this against each other has not moved, mm."""
 
@@ -142,7 +141,7 @@ def _swung(problem: Problem, chains: tuple[Chain, ...], around: Surroundings) ->
     for chain in (c for c in chains if c.far is None):
         stands = _standing_to(around, chain.anchor)
         others = sorted((s for s in stands if s.owner not in (chain.patch, chain.anchor)), key=lambda s: s.owner)
-        near = [_left_of(problem.sites[s.owner], s.boxes) for s in others if s.state == "open" and s.owner in problem.sites]
+        near = [_left_of(problem.sites[s.owner], s.boxes) for s in others if s.state == "open"]
         bases = [problem.scaffold.base(s.owner) for s in others if s.state == "base"]
         found += [(chain.patch, name) for name in swings_into(problem.scaffold, chain, near, bases)]
     return tuple(found)

@@ -1,4 +1,4 @@
-"""The furniture as the paper's own sheets between two steps of the fold: bases, and patches that stand open or lie flat.
+"""The furniture as the paper's sheets between two steps of the fold: bases, and patches that stand open or lie flat.
 
 Without thickness a unit comes down until all its bases lie in one plane, and its sheets in it. All patches are as wide
 as they will be left, and what is deleted is not there. Made for all chains together: there are few of any one unit.
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from foldfab.folding.mechanism import frames
+from foldfab.folding.mechanism import joints, tilts
 from foldfab.folding.model import Chain
 from foldfab.folding.sheets import UP, ends_of, outlines, sheet
 from foldfab.geometry.arrays import Array, Indices
@@ -43,9 +43,9 @@ class Spread:
     hung: tuple[Array, Array]
     """The same as seen from their far bases."""
 
-    def lay(self, chains: Sequence[int]) -> None:
+    def lay(self, chains: Indices) -> None:
         """Some patches, by the places of their chains, lie folded."""
-        at, flat = np.array(chains) + self.first, self.flat[chains]
+        at, flat = chains + self.first, self.flat[chains]
         self.boxes.center[at], self.boxes.axes[at], self.boxes.half[at] = flat.center, flat.axes, flat.half
         self.low[at], self.high[at] = bounds(flat)
 
@@ -88,8 +88,8 @@ def _patches(
     swept = _passed(foot, across, passes, along, span, np.stack([np.zeros(len(chains)), height], axis=1))
     slants = np.array([c.far is not None and c.mechanism == "slanted" for c in chains])
     back = np.stack([-height, np.zeros(len(chains))], axis=1)
-    hung = _passed(foot + up * length, across, -passes[:, ::-1], along, span, back)
-    hung = tuple(np.where(slants[:, None], far, near) for far, near in zip(hung, swept, strict=True))
+    low, high = _passed(foot + up * length, across, -passes[:, ::-1], along, span, back)
+    hung = np.where(slants[:, None], low, swept[0]), np.where(slants[:, None], high, swept[1])
     return stood, flat, swept, hung
 
 
@@ -103,9 +103,8 @@ def _aside(scaffold: Scaffold, chains: Sequence[Chain], length: Array) -> tuple[
         passes[i] = [-length[i], length[i]]
         if chain.far is not None and chain.mechanism == "in-place":
             leaning = sheet(scaffold, chain)
-            joints = np.append(((frames(leaning, np.ones(1))[0][0] - leaning.root) @ chain.across), 0.0)
-            longest = float(leaning.lengths.max())
-            lies[i], passes[i] = [joints.min(), joints.max()], [-longest, longest]
+            ends, longest = joints(leaning, tilts(leaning, np.ones(1)))[0, :, 0], float(leaning.lengths.max())
+            lies[i], passes[i] = [ends.min(), ends.max()], [-longest, longest]
     return np.sort(lies), np.sort(passes)
 
 

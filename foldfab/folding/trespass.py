@@ -1,8 +1,8 @@
 """The whole fold played through once more as the paper's own sheets: what those of one unit cross of all the others.
 
-Within a unit that is a matter of its conflict graph (`sheets`); here bases and the sheets of other units take part where
-they are at that moment. While a unit folds in place, a chain between heights a and f meets what a base at height k > f
-carries as if that stood k - f lower; what a slanting unit carries along is held against what stays behind as well.
+Within a unit that is a matter of its conflict graph (`sheets`); here bases and the sheets of other units take part
+where they are at that moment. While a unit folds in place, a chain between heights a and f meets what a base at height
+k > f carries as if that stood k - f lower; what a slanting unit carries along is held against what stays behind too.
 
 What crosses is learned by the pieces of the way of folding that is to blame. Cost: for each unit, bounds of what its
 chains pass against those of all sheets; boxes over time only of what is near.
@@ -53,7 +53,7 @@ class _Step:
 
 def trespasses(problem: Problem, folds: tuple[UnitFold, ...]) -> Found:
     """What the sheets of the first unit in which any do cross of others; nothing if none do."""
-    if len(folds) == 1:
+    if len(folds) == 1 and len(folds[0].unit.bases) < 3:
         return {}
     chains = [c for fold in folds for c in fold.chains]
     table, start = spread(problem.scaffold, chains), 0
@@ -91,10 +91,9 @@ def _moves(step: _Step, local: Array) -> Array:
     Each section from one base's start to the next one's takes as long, and what folds in it turns evenly.
     """
     found = np.zeros((len(local), len(step.height), 3))
-    edge = np.unique(step.height)[::-1]
-    at = local * (len(edge) - 1)
-    section = np.clip(at.astype(np.int64), 0, max(len(edge) - 2, 0))
-    press = edge[section + 1] + (edge[section] - edge[section + 1]) * np.cos((at - section) * np.pi / 2) if len(edge) > 1 else np.zeros_like(local)
+    edge, count = np.append(np.unique(step.height)[::-1], 0.0), _sections(step)
+    section = np.minimum(local * count, count - 1).astype(np.int64)
+    press = edge[section + 1] + (edge[section] - edge[section + 1]) * np.cos((local * count - section) * np.pi / 2)
     found[..., 2] = -np.maximum(step.height - press[:, None], 0.0)
     if step.slants is not None:
         lean, plane = step.slants.lean, step.slants.plane * step.length
@@ -106,7 +105,11 @@ def _moves(step: _Step, local: Array) -> Array:
 
 def _moments(step: _Step) -> Array:
     """The unit's own time (k,) from 0 to 1."""
-    return np.linspace(0.0, 1.0, STEPS * max(len(np.unique(step.height)) - 1, 1) + 1)
+    return np.linspace(0.0, 1.0, STEPS * _sections(step) + 1)
+
+
+def _sections(step: _Step) -> int:
+    return max(len(np.unique(step.height)) - 1, 1)
 
 
 def _crossed(problem: Problem, table: Spread, step: _Step) -> Found:
@@ -142,7 +145,8 @@ def _near(problem: Problem, table: Spread, step: _Step) -> tuple[Indices, Indice
         if chain.far is None:
             # Those that stand on its own base were asked when it was chosen (`sheets.swings_into`).
             near[i, table.first :] &= patches != number[chain.anchor]
-    return np.nonzero(near)
+    first, second = np.nonzero(near)
+    return first, second
 
 
 def _crossed_by(problem: Problem, table: Spread, step: _Step, chain: Chain, others: Indices) -> Found:

@@ -78,7 +78,9 @@ def test_what_sheets_cover_of_each_other_is_told_at_the_moment_of_passing(
     edge = 40 * np.sqrt(1 - (21.7 / 40) ** 2)
     ground = lump(table.bodies[0], sheet("shelf", (3, 21.7), (edge + over, 21.7), y=30.0))
     top = lump(table.bodies[1], sheet("top", (0, 40), (60, 40), y=30.0))
-    whole = folding([ground, top, *table.bodies[2:]], table.hinges, lambda t: np.repeat(t[:, None] * np.pi / 2, 4, 1), 8)
+    whole = folding(
+        [ground, top, *table.bodies[2:]], table.hinges, lambda t: np.repeat(t[:, None] * np.pi / 2, 4, 1), 8
+    )
     found = [(m.first, m.second, round(m.depth, 3)) for m in met(whole)]
     assert found == ([("ground", "top", over)] if over > 0 else [])
 

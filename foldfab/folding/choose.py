@@ -51,6 +51,8 @@ def cheapest(
     gaps: list[float] | None = None,
     tangled: set[tuple[int, ...]] | None = None,
     work: Work | None = None,
+    *,
+    is_brief: bool = False,
 ) -> tuple[int, ...] | None:
     """The option of each group in the cheapest conflict-free choice, or None where there is none.
 
@@ -61,6 +63,7 @@ def cheapest(
         gaps: gets by how much the choice may be dearer than the cheapest one, where the work did not suffice to tell.
         tangled: gets the groups that plain branch and bound gave up on, and says on which it need not be tried again.
         work: is charged for what CP-SAT does.
+        is_brief: leaves it with what a few branches find, or with None; the gap is infinite where they do not suffice.
     """
     least = tuple(int(c.argmin()) for c in costs)
     if not all(math.isfinite(c[i]) for c, i in zip(costs, least, strict=True)):
@@ -73,7 +76,8 @@ def cheapest(
     taken: dict[int, int] = {}
     for groups in _islands(alive, table, forbidden):
         own = {g: alive[g] for g in groups}
-        best, gap, spent = _solved(own, costs, table, forbidden, tangled if tangled is not None else set())
+        known = tangled if tangled is not None else set()
+        best, gap, spent = _solved(own, costs, table, forbidden, known, is_brief=is_brief)
         if work is not None:
             work.charge(spent)
         if gaps is not None and gap > 0:
@@ -191,7 +195,7 @@ def _islands(alive: list[Bools], table: Table, forbidden: frozenset[Combination]
 
 def _solved(
     alive: Mapping[int, Bools], costs: list[Array], table: Table, forbidden: frozenset[Combination],
-    tangled: set[tuple[int, ...]],
+    tangled: set[tuple[int, ...]], *, is_brief: bool,
 ) -> tuple[dict[int, int] | None, float, float]:  # fmt: skip
     """The best option for each group, by how much it may be too dear, and the charge for CP-SAT."""
     groups = set(alive)
@@ -207,6 +211,8 @@ def _solved(
         if search.left >= 0:
             return best, 0.0, 0.0
         tangled.add(tuple(alive))
+    if is_brief:
+        return best, math.inf, 0.0
     return proven(alive, costs, table, sorted(own), best)
 
 

@@ -15,7 +15,7 @@ from foldfab.folding import basic
 from foldfab.folding.basic import Option, Variant
 from foldfab.folding.conflict import compare_sheets
 from foldfab.folding.congruent import repertoire
-from foldfab.folding.graph import Graph, Lesson
+from foldfab.folding.graph import Graph, Lesson, Outlook
 from foldfab.folding.interruption import interrupted
 from foldfab.folding.model import Chain
 from foldfab.folding.press import Motion
@@ -150,7 +150,7 @@ def _least_choice(problem: Problem, own: Repertoire) -> Choice:
 
     def settled() -> tuple[Graph, tuple[int, ...] | None]:
         found, graph = posed()
-        return _bettered(problem, own, found, graph, graph.cheapest(), posed)[1:]
+        return _bettered(problem, own, found, graph, None, posed)[1:]
 
     graph, picked = settled()
     # Only here, before anything rests on what the unit counts at least.
@@ -247,44 +247,59 @@ def _picked(
         found = prospects(problem, own, around, in_place=in_place)
         return found, Graph(problem, own, found, around.offset, learned, scene.chosen)
 
-    return _bettered(problem, own, found, graph, known or graph.cheapest(), posed)
+    return _bettered(problem, own, found, graph, known, posed)
 
 
 def _bettered(
-    problem: Problem, own: Repertoire, found: Prospects, graph: Graph, picked: tuple[int, ...] | None,
+    problem: Problem, own: Repertoire, found: Prospects, graph: Graph, known: tuple[int, ...] | None,
     posed: Callable[[], tuple[Prospects, Graph]],
 ) -> tuple[Prospects, Graph, tuple[int, ...] | None]:  # fmt: skip
     """The cheapest choice once all lanes are made that could better it, and the graph `posed` with them.
 
-    That the next ones will better it is seen far sooner than what is the cheapest choice until then.
+    That the next ones will better it is seen far sooner than what is the cheapest choice until then; and where none
+    will, what was looked at for that may tell the cheapest choice of all.
     """
-    while wanted := _wanted(problem, own, graph, picked):
-        weight = graph.weight(picked) if picked is not None else -np.inf
-        while wanted:
-            extend(problem, own, wanted)
+    picked, is_least = (known, True) if known is not None else graph.soon()
+    outlook = _outlook(problem, own, graph, picked, is_least=is_least)
+    while outlook.wanted:
+        weight = _weight(graph, picked, is_least=is_least)
+        while outlook.wanted:
+            extend(problem, own, outlook.wanted)
             found, graph = posed()
-            wanted = _bettering(problem, own, graph, weight)
-        picked = graph.cheapest()
-    return found, graph, picked
+            outlook = _bettering(problem, own, graph, weight)
+        picked, is_least = graph.soon()
+        if not np.isfinite(outlook.floor):
+            outlook = _outlook(problem, own, graph, picked, is_least=is_least)
+    best = picked if is_least else outlook.least or picked
+    if not is_least and (best is None or not graph.is_cheapest(best, outlook.floor)):
+        best = graph.cheapest()
+    return found, graph, best
 
 
-def _wanted(problem: Problem, own: Repertoire, graph: Graph, picked: tuple[int, ...] | None) -> list[str]:
-    """The patches with lanes not made yet that could better a choice; all such where there is no choice."""
-    if picked is None:
-        return [p for p in own.unit.patches if own.later[p]]
-    return _bettering(problem, own, graph, graph.weight(picked))
+def _weight(graph: Graph, picked: tuple[int, ...] | None, *, is_least: bool) -> float:
+    """What a choice counts; without any, what lanes have to better if it is known that there is none, or if not."""
+    return graph.weight(picked) if picked is not None else -np.inf if is_least else np.inf
 
 
-def _bettering(problem: Problem, own: Repertoire, graph: Graph, weight: float) -> list[str]:
-    """The patches with lanes not made yet that could be part of a choice that weighs less."""
+def _outlook(
+    problem: Problem, own: Repertoire, graph: Graph, picked: tuple[int, ...] | None, *, is_least: bool
+) -> Outlook:
+    """The lanes not made yet that could better a choice; all of them where there is no choice."""
+    if picked is None and is_least:
+        return Outlook(tuple(p for p in own.unit.patches if own.later[p]))
+    return _bettering(problem, own, graph, _weight(graph, picked, is_least=is_least))
+
+
+def _bettering(problem: Problem, own: Repertoire, graph: Graph, weight: float) -> Outlook:
+    """The lanes not made yet that could be part of a choice that weighs less."""
     least: Choice | None = problem.least.get(own.unit)
     if least is not None and weight <= least.weight:
-        return []
+        return Outlook(floor=weight)
     first = {p: _price(problem, p, many[0].variant) if many else np.inf for p, many in own.plain.items()}
     spare = weight - sum(price for price in first.values() if np.isfinite(price))
     prices = {p: _price(problem, p, later[0]) for p, later in own.later.items() if later}
     affordable = {p: price for p, price in prices.items() if price - first[p] < spare}
-    return graph.promising(affordable, weight) if affordable else []
+    return graph.promising(affordable, weight) if affordable else Outlook()
 
 
 def _price(problem: Problem, patch: str, variant: Variant) -> float:

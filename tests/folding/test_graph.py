@@ -55,13 +55,13 @@ def test_a_choice_is_proven_only_once_no_lane_promises_to_better_it(
     made = problem("deep_box")
     (unit,) = made.units
     own, proofs = repertoire(made, unit), list[int]()
-    usual = Graph.cheapest
+    usual = Graph.soon
 
-    def counted(graph: Graph) -> tuple[int, ...] | None:
+    def counted(graph: Graph) -> tuple[tuple[int, ...] | None, bool]:
         proofs.append(len(own.lanes))
         return usual(graph)
 
-    monkeypatch.setattr(Graph, "cheapest", counted)
+    monkeypatch.setattr(Graph, "soon", counted)
     grown = list[int]()
     monkeypatch.setattr(unit_fold, "extend", lambda *given: (grown.append(1), extend(*given)))
     floors(made)
@@ -70,10 +70,10 @@ def test_a_choice_is_proven_only_once_no_lane_promises_to_better_it(
 
 def test_a_promise_is_taken_where_it_is_cheaper_than_what_is_known(problem: Make) -> None:
     graph = graph_of(problem("corner", slanting=False))
-    assert graph.promising({"back": 10.0, "side": 10.0}, np.inf) == []
-    assert graph.promising({"back": 0.0, "side": 10.0}, np.inf) == ["back"]
-    assert graph.promising({"back": 0.0, "side": 0.0}, np.inf) == ["back", "side"]
-    assert graph.promising({"back": 0.1, "side": 0.1}, 0.2) == []
+    assert graph.promising({"back": 10.0, "side": 10.0}, np.inf).wanted == ()
+    assert graph.promising({"back": 0.0, "side": 10.0}, np.inf).wanted == ("back",)
+    assert graph.promising({"back": 0.0, "side": 0.0}, np.inf).wanted == ("back", "side")
+    assert graph.promising({"back": 0.1, "side": 0.1}, 0.2).wanted == ()
 
 
 @pytest.mark.parametrize("patches", [("back",), ("back", "side")])
@@ -83,7 +83,7 @@ def test_a_promise_takes_over_no_conflicts_of_the_deletion_whose_place_it_takes(
     graph = graph_of(problem("corner", slanting=False))
     gone = tuple(len(o.price) - 1 for o in graph.options)
     graph.learn(gone, Clash((patches,), "the furniture would fall apart", cuts=True))
-    assert graph.promising({"back": 0.0, "side": 0.0}, np.inf) == ["back", "side"]
+    assert graph.promising({"back": 0.0, "side": 0.0}, np.inf).wanted == ("back", "side")
 
 
 def test_beside_a_promise_nothing_is_dragged_along(problem: Make) -> None:
@@ -92,8 +92,8 @@ def test_beside_a_promise_nothing_is_dragged_along(problem: Make) -> None:
     own = repertoire(made, made.unit_of["left"])
     graph = Graph(made, own, unhindered(made, own), np.zeros(3))
     assert {x.variant.mechanism for x in own.lanes} == {"slanted"}
-    assert graph.promising({"left": 0.0}, 10.0) == []
-    assert graph.promising({"left": 0.0, "right": 0.0}, 10.0) == ["left", "right"]
+    assert graph.promising({"left": 0.0}, 10.0).wanted == ()
+    assert graph.promising({"left": 0.0, "right": 0.0}, 10.0).wanted == ("left", "right")
 
 
 def test_what_was_learned_of_lanes_that_are_not_there_any_more_is_left_aside(problem: Make) -> None:

@@ -20,6 +20,7 @@ from foldfab.folding.problem import Crossed, Problem, as_sheet
 from foldfab.folding.repertoire import Repertoire, cuts_of, far_shift, lane, stops_early, swept
 from foldfab.folding.space import Batch, blocked, carried
 from foldfab.folding.surroundings import Surroundings
+from foldfab.folding.work import LOOKING
 from foldfab.geometry.arrays import Bools
 
 PAD_SHARE = 0.4
@@ -105,6 +106,7 @@ def _look_at(
 ) -> None:
     """Finds out which pieces of the lanes have no room, and what they meet."""
     fresh = [x for x in many if x.number not in around.met]
+    problem.work.charge(LOOKING * len(fresh))
     found, hit = _held_against(problem, own, around, fresh)
     for x in fresh:
         if x.is_out or (problem.options.stay_in_box and leaves_the_box(problem, own, around, x)):

@@ -19,6 +19,9 @@ from foldfab.folding.symmetry import Signature, is_less, signature, unlike
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Bools
 
+NO_MORE = 1e-5
+"""What preferences between options of equal cost may add up to."""
+
 Place = tuple[int, tuple[int, int]] | None
 """A lane by its number and a window; None where a patch is deleted."""
 

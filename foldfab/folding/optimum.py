@@ -19,7 +19,7 @@ import numpy as np
 
 from foldfab.folding import basic
 from foldfab.folding.congruent import repertoire
-from foldfab.folding.group import Group, cut_of, posed
+from foldfab.folding.group import NO_MORE, Group, cut_of, posed
 from foldfab.folding.ordering import Ordered, after, neighbouring
 from foldfab.folding.problem import Problem
 from foldfab.folding.repertoire import extend
@@ -29,8 +29,6 @@ from foldfab.folding.symmetry import Signature
 from foldfab.folding.unit_fold import UnitFold
 from foldfab.folding.work import PLAYING
 
-NO_MORE = 1e-5
-"""What preferences between options of equal cost may add up to."""
 BUILDING = 5e-2
 """Charge for a constraint program that is built, s."""
 SHARE = 0.5

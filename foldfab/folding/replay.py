@@ -8,7 +8,7 @@ from math import fsum
 
 from foldfab.folding import basic
 from foldfab.folding.congruent import repertoire
-from foldfab.folding.group import Group, learn
+from foldfab.folding.group import NO_MORE, Group, learn
 from foldfab.folding.lessons import lessons_of, lessons_of_others, must_wait, out_of_the_box
 from foldfab.folding.master import Proposal
 from foldfab.folding.model import Chain
@@ -50,7 +50,7 @@ def played(
                 return None, False
             fold = repaired
         spare -= fold.weight - group.floor[name]
-        if not holds and spare <= 0:
+        if not holds and spare <= NO_MORE:
             return None, False
         folds.append(fold)
         scene = after(problem, scene, fold)

@@ -10,10 +10,11 @@ import numpy as np
 from foldfab.errors import FoldingError, LossError
 from foldfab.folding import anatomy, basic
 from foldfab.folding.demands import require_allowed, require_choices, require_variants
+from foldfab.folding.group import NO_MORE
 from foldfab.folding.improve import improved, weight
 from foldfab.folding.knuckles import given_back
 from foldfab.folding.model import FoldSolution, Modification, Step, Thickness
-from foldfab.folding.optimum import NO_MORE, lower_bound, optimal
+from foldfab.folding.optimum import lower_bound, optimal
 from foldfab.folding.options import DELETION
 from foldfab.folding.ordering import Ordered, floors, greedy, travel
 from foldfab.folding.problem import Problem, kept_clear, without

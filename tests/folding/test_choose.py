@@ -65,6 +65,26 @@ def test_nor_is_one_where_the_search_is_handed_over(limit: int, widest: int, ins
         assert_cheapest(*instance)
 
 
+@pytest.mark.parametrize(("limit", "widest"), [(0, 100), (2, 100), (1500, 100), (1500, 0)])
+@given(instance=instances())
+@settings(deadline=None, derandomize=True, max_examples=60)
+def test_a_brief_search_says_whether_it_was_enough(limit: int, widest: int, instance: Instance) -> None:
+    costs, conflicts, forbidden = instance
+    gaps: list[float] = []
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(choose, "LIMIT", limit)
+        patch.setattr(choose, "WIDEST", widest)
+        patch.setattr(choose, "proven", None)
+        found = cheapest(costs, conflicts, forbidden, gaps, is_brief=True)
+    assert found is None or is_allowed(found, costs, conflicts, forbidden)
+    if gaps:
+        assert min(gaps) == INF and (limit < 1500 or not widest)
+    else:
+        best = cheapest(costs, conflicts, forbidden)
+        assert (found is None) == (best is None)
+        assert found is None or best is None or price(found, costs) == pytest.approx(price(best, costs))
+
+
 @given(instances(), st.sampled_from([0.3, 0.8, INF]))
 @settings(deadline=None, derandomize=True, max_examples=200)
 def test_what_is_cheaper_than_something_is_found_where_there_is_any(instance: Instance, than: float) -> None:

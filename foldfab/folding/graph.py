@@ -17,7 +17,7 @@ from foldfab.folding.prospects import Prospects
 from foldfab.folding.realise import Clash
 from foldfab.folding.repertoire import Place, Repertoire
 from foldfab.folding.symmetry import bound, signature, unlike
-from foldfab.folding.work import SEARCHING
+from foldfab.folding.work import SEARCHING, Work
 from foldfab.geometry.arrays import Array, Bools
 
 MANY = 16
@@ -123,10 +123,16 @@ class Graph:
         picked = cheapest(self.costs, tables, forbidden, gaps, self.tangled, self.work, is_brief=True)
         return picked, not gaps
 
-    def cheaper(self, than: float) -> tuple[int, ...] | None:
-        """A choice that counts less, where a little work finds one; not for graphs with several ways to drag bases."""
+    def cheaper(self, than: float, work: Work) -> tuple[tuple[int, ...] | None, float]:
+        """The cheapest choice if it counts less, as far as the work goes, and what any counts at least.
+
+        Not for graphs with several ways to drag bases.
+        """
         self.work.charge(SEARCHING * len(self.costs))
-        return cheaper(self.costs, self.tables, frozenset(self.forbidden), than)
+        before = work.spent
+        found = cheaper(self.costs, self.tables, frozenset(self.forbidden), than, work)
+        self.work.charge(work.spent - before)
+        return found
 
     def _cheapest(self, costs: list[Array]) -> tuple[int, ...] | None:
         self.work.charge(SEARCHING * len(costs))

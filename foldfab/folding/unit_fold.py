@@ -64,9 +64,11 @@ class Choice:
     """One option for each patch of a unit, not yet played."""
 
     weight: float
-    """What it counts in the search."""
+    """What it counts in the search, or less where that is not proven."""
     places: Mapping[str, Place]
     """By patch that is kept, its lane and its window in N_s-ths."""
+    spare: float = 0.0
+    """By how much hinges that are interrupted might better it, where the work did not suffice to tell."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,7 +156,8 @@ def _least_choice(problem: Problem, own: Repertoire) -> Choice:
 
     graph, picked = settled()
     # Only here, before anything rests on what the unit counts at least.
-    if interrupted(problem, own, graph, picked):
+    found_any, floor = interrupted(problem, own, graph, picked)
+    if found_any:
         graph, picked = settled()
     if picked is not None and not own.sheets and crossings(problem.scaffold, _chains(problem, graph, picked)):
         compare_sheets(problem, own)
@@ -166,7 +169,8 @@ def _least_choice(problem: Problem, own: Repertoire) -> Choice:
     if not graph.gaps:
         own.least.update(places)
     # Where the work did not suffice to prove the choice, what it may be too dear by is no part of what must be paid.
-    return Choice(graph.weight(picked) - sum(graph.gaps), places)
+    weight = graph.weight(picked) - sum(graph.gaps)
+    return Choice(min(weight, floor), places, max(weight - floor, 0.0))
 
 
 def _chains(problem: Problem, graph: Graph, picked: tuple[int, ...]) -> list[Chain]:

@@ -99,9 +99,10 @@ def cheaper(
     """
     least = [float(c.min()) for c in costs]
     # What may be spent beyond the cheapest options of all groups, and what must be.
-    spare, floor = than - sum(least), sum(least)
-    if spare <= 0:
+    floor = sum(least)
+    if floor >= than or floor == np.inf:
         return None, floor
+    spare = than - floor
     table, held = _by_group(len(costs), conflicts), _held(costs, forbidden)
     able = [_undominated(costs[g], [*table[g].values(), *held[g]]) for g in range(len(costs))]
     alive = [own & (cost - low < spare) for own, cost, low in zip(able, costs, least, strict=True)]
@@ -110,7 +111,7 @@ def cheaper(
         own, part = {g: alive[g] for g in groups}, sum(least[g] for g in groups)
         best, gap = _cheaper(own, costs, table, forbidden, part + spare, work or Work())
         cost = sum(float(costs[g][o]) for g, o in best.items()) if best is not None else part + spare
-        floor += max(cost - gap - part, 0.0)
+        floor += max(cost - part - gap, 0.0) if gap < np.inf else 0.0
         if best is None or cost >= part + spare:
             return None, floor
         taken.update(best)
@@ -233,7 +234,18 @@ def _solved(
         tangled.add(tuple(alive))
     if is_brief:
         return best, math.inf, 0.0
-    return proven(alive, costs, table, sorted(own), best)
+    return proven(_worthwhile(alive, costs, best), costs, table, sorted(own), best)
+
+
+def _worthwhile(
+    alive: Mapping[int, Bools], costs: list[Array], best: Mapping[int, int] | None
+) -> Mapping[int, Bools]:  # fmt: skip
+    """The options that may be part of a choice no dearer than the best known."""
+    if best is None:
+        return alive
+    least = {g: float(costs[g][own].min()) for g, own in alive.items()}
+    spare = sum(float(costs[g][o]) - least[g] for g, o in best.items()) + EPSILON
+    return {g: own & (costs[g] - least[g] <= spare) for g, own in alive.items()}
 
 
 class _Search:

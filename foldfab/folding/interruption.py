@@ -6,7 +6,8 @@ knuckles that suit. Where a choice of it counts less, the lanes whose hinges are
 stretch of knuckles that holds and that suits all; until a choice holds, or none is cheaper. Then they are made in every
 place.
 
-This only finds options, and what is not found with little work is left: it bounds nothing.
+What is asked is a relaxation, so that its answers bound any such choice. Where the work ends first, its last answer is
+what the unit counts at least.
 """
 
 from __future__ import annotations

@@ -20,8 +20,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from foldfab.folding.eliminate import eliminated
-from foldfab.folding.exact import proven
-from foldfab.folding.work import Work
+from foldfab.folding.exact import WORK, proven
+from foldfab.folding.work import ENGINE, STARTING, Work
 from foldfab.geometry.arrays import Array, Bools, Indices
 
 EPSILON = 1e-12
@@ -31,7 +31,7 @@ LIMIT = 1_500
 SHORT = 100
 """The same where it had to before: as many as give it a choice to start from."""
 FEW_BRANCHES = 600
-"""The same where it is only asked whether there is something cheaper, and nobody takes over."""
+"""The same where it is only asked whether there is something cheaper: most of what would be dearer is left out."""
 FEW = 8
 """Groups beyond which elimination is tried first."""
 WIDEST = 100
@@ -51,6 +51,8 @@ def cheapest(
     gaps: list[float] | None = None,
     tangled: set[tuple[int, ...]] | None = None,
     work: Work | None = None,
+    *,
+    is_brief: bool = False,
 ) -> tuple[int, ...] | None:
     """The option of each group in the cheapest conflict-free choice, or None where there is none.
 
@@ -61,6 +63,7 @@ def cheapest(
         gaps: gets by how much the choice may be dearer than the cheapest one, where the work did not suffice to tell.
         tangled: gets the groups that plain branch and bound gave up on, and says on which it need not be tried again.
         work: is charged for what CP-SAT does.
+        is_brief: leaves it with what a few branches find, or with None; the gap is infinite where they do not suffice.
     """
     least = tuple(int(c.argmin()) for c in costs)
     if not all(math.isfinite(c[i]) for c, i in zip(costs, least, strict=True)):
@@ -73,7 +76,8 @@ def cheapest(
     taken: dict[int, int] = {}
     for groups in _islands(alive, table, forbidden):
         own = {g: alive[g] for g in groups}
-        best, gap, spent = _solved(own, costs, table, forbidden, tangled if tangled is not None else set())
+        known = tangled if tangled is not None else set()
+        best, gap, spent = _solved(own, costs, table, forbidden, known, is_brief=is_brief)
         if work is not None:
             work.charge(spent)
         if gaps is not None and gap > 0:
@@ -85,31 +89,52 @@ def cheapest(
 
 
 def cheaper(
-    costs: list[Array], conflicts: Mapping[tuple[int, int], Bools], forbidden: frozenset[Combination], than: float
-) -> tuple[int, ...] | None:
-    """A conflict-free choice that costs less than something, the cheapest one as far as a few branches tell.
+    costs: list[Array], conflicts: Mapping[tuple[int, int], Bools], forbidden: frozenset[Combination], than: float,
+    work: Work | None = None,
+) -> tuple[tuple[int, ...] | None, float]:  # fmt: skip
+    """The cheapest conflict-free choice, or None where none costs less than something; and what any costs at least.
 
-    None where there is none, or none is found in `FEW_BRANCHES` for each set of groups with conflicts between them.
+    Where `FEW_BRANCHES` do not suffice for groups with conflicts between them, CP-SAT is asked, as long as there is
+    work left and of all those options alone that could be part of it: they are few where little may be spent.
     """
     least = [float(c.min()) for c in costs]
-    if sum(least) >= than:
-        return None
-    table = _by_group(len(costs), conflicts)
-    held = _held(costs, forbidden)
-    alive = [_undominated(costs[g], [*table[g].values(), *held[g]]) for g in range(len(costs))]
+    # What may be spent beyond the cheapest options of all groups, and what must be.
+    floor = sum(least)
+    if floor >= than or floor == np.inf:
+        return None, floor
+    spare = than - floor
+    table, held = _by_group(len(costs), conflicts), _held(costs, forbidden)
+    able = [_undominated(costs[g], [*table[g].values(), *held[g]]) for g in range(len(costs))]
+    alive = [own & (cost - low < spare) for own, cost, low in zip(able, costs, least, strict=True)]
     taken: dict[int, int] = {}
-    # What may be spent beyond the cheapest options of all groups.
-    spare = than - sum(least)
     for groups in _islands(alive, table, forbidden):
         own, part = {g: alive[g] for g in groups}, sum(least[g] for g in groups)
-        within = [c for c in forbidden if {g for g, _ in c} <= set(groups)]
-        search = _Search(own, costs, table, within, FEW_BRANCHES, part + spare)
-        best = search.found()
-        if best is None:
-            return None
+        best, gap = _cheaper(own, costs, table, forbidden, part + spare, work or Work())
+        cost = sum(float(costs[g][o]) for g, o in best.items()) if best is not None else part + spare
+        floor += max(cost - part - gap, 0.0) if gap < np.inf else 0.0
+        if best is None or cost >= part + spare:
+            return None, floor
         taken.update(best)
-        spare -= search.bound - part
-    return tuple(taken[g] for g in range(len(costs)))
+        spare -= cost - part
+    return tuple(taken[g] for g in range(len(costs))), floor
+
+
+def _cheaper(
+    alive: Mapping[int, Bools], costs: list[Array], table: Table, forbidden: frozenset[Combination], than: float,
+    work: Work,
+) -> tuple[dict[int, int] | None, float]:  # fmt: skip
+    """The best option for each group, and by how much it may be too dear; none where that is no less than something."""
+    within = [c for c in forbidden if {g for g, _ in c} <= set(alive)]
+    search = _Search(alive, costs, table, within, FEW_BRANCHES, than)
+    best = search.found()
+    if search.left >= 0:
+        return best, 0.0
+    if work.left <= STARTING:
+        return best, np.inf
+    limit = min((work.left - STARTING) / ENGINE, WORK)
+    best, gap, spent = proven(alive, costs, table, sorted(within), best, limit)
+    work.charge(spent)
+    return best, gap
 
 
 def _go_together(
@@ -191,7 +216,7 @@ def _islands(alive: list[Bools], table: Table, forbidden: frozenset[Combination]
 
 def _solved(
     alive: Mapping[int, Bools], costs: list[Array], table: Table, forbidden: frozenset[Combination],
-    tangled: set[tuple[int, ...]],
+    tangled: set[tuple[int, ...]], *, is_brief: bool,
 ) -> tuple[dict[int, int] | None, float, float]:  # fmt: skip
     """The best option for each group, by how much it may be too dear, and the charge for CP-SAT."""
     groups = set(alive)
@@ -207,7 +232,20 @@ def _solved(
         if search.left >= 0:
             return best, 0.0, 0.0
         tangled.add(tuple(alive))
-    return proven(alive, costs, table, sorted(own), best)
+    if is_brief:
+        return best, math.inf, 0.0
+    return proven(_worthwhile(alive, costs, best), costs, table, sorted(own), best)
+
+
+def _worthwhile(
+    alive: Mapping[int, Bools], costs: list[Array], best: Mapping[int, int] | None
+) -> Mapping[int, Bools]:  # fmt: skip
+    """The options that may be part of a choice no dearer than the best known."""
+    if best is None:
+        return alive
+    least = {g: float(costs[g][own].min()) for g, own in alive.items()}
+    spare = sum(float(costs[g][o]) - least[g] for g, o in best.items()) + EPSILON
+    return {g: own & (costs[g] - least[g] <= spare) for g, own in alive.items()}
 
 
 class _Search:

@@ -23,10 +23,10 @@ WORK = 1.0
 
 def proven(
     alive: Mapping[int, Bools], costs: list[Array], table: list[dict[int, Bools]],
-    forbidden: list[tuple[tuple[int, tuple[int, ...]], ...]], known: Mapping[int, int] | None,
+    forbidden: list[tuple[tuple[int, tuple[int, ...]], ...]], known: Mapping[int, int] | None, limit: float = WORK,
 ) -> tuple[dict[int, int] | None, float, float]:  # fmt: skip
     """The cheapest option for each group, or None where there is no choice without conflicts; by how much it may be
-    dearer than the cheapest where the work did not suffice to tell; and the charge for that, s.
+    dearer than the cheapest where the work did not suffice to tell, infinite where it found none; and the charge, s.
 
     Args:
         alive: by group, which of its options (n,) may be taken.
@@ -34,6 +34,7 @@ def proven(
         table: for each group, by other group, which of their options (n_g, n_h) exclude each other.
         forbidden: groups that must not all take one of some options of theirs.
         known: the best choice known, to start from.
+        limit: deterministic time after which the best choice so far is taken.
     """
     from ortools.sat.python import cp_model
 
@@ -50,7 +51,7 @@ def proven(
     model.minimize(cp_model.LinearExpr.weighted_sum(list(on.values()), prices))
     for key in (known or {}).items():
         model.add_hint(on[key], True)
-    return (*_solved(model, solver := _engine(), on, costs, known), _charge(solver))
+    return (*_solved(model, solver := _engine(limit), on, costs, known), _charge(solver))
 
 
 def _exclude(
@@ -70,7 +71,7 @@ def _exclude(
                     constraints.add().at_most_one.literals.extend([first, *others])
 
 
-def _engine() -> Any:
+def _engine(limit: float) -> Any:
     from ortools.sat.python import cp_model
 
     solver = cp_model.CpSolver()
@@ -80,7 +81,7 @@ def _engine() -> Any:
     # is what helps.
     solver.parameters.cp_model_presolve = False
     solver.parameters.linearization_level = 2
-    solver.parameters.max_deterministic_time = WORK
+    solver.parameters.max_deterministic_time = limit
     return solver
 
 
@@ -99,6 +100,6 @@ def _solved(
     bound = float(solver.best_objective_bound) / UNITS_PER_COST
     best = {key[0]: key[1] for key, var in on.items() if solver.value(var)} if status != cp_model.UNKNOWN else known
     if best is None:
-        return None, 0.0
+        return None, np.inf
     spent = sum(float(costs[g][o]) for g, o in best.items())
     return dict(best), 0.0 if status == cp_model.OPTIMAL else max(spent - bound, 0.0)

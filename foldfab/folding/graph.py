@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from foldfab.folding.basic import Option
-from foldfab.folding.choose import Combination, cheaper, cheapest
+from foldfab.folding.choose import EPSILON, Combination, cheaper, cheapest
 from foldfab.folding.conflict import compare, modes, neighbours, table, windows_table
 from foldfab.folding.options import Options, options_of
 from foldfab.folding.problem import Problem
@@ -15,7 +17,7 @@ from foldfab.folding.prospects import Prospects
 from foldfab.folding.realise import Clash
 from foldfab.folding.repertoire import Place, Repertoire
 from foldfab.folding.symmetry import bound, signature, unlike
-from foldfab.folding.work import SEARCHING
+from foldfab.folding.work import SEARCHING, Work
 from foldfab.geometry.arrays import Array, Bools
 
 MANY = 16
@@ -23,6 +25,18 @@ MANY = 16
 
 Lesson = tuple[Clash, tuple[Place | None, ...]]
 """A clash and what was chosen for each patch of the unit."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outlook:
+    """What lanes that are not made yet could better."""
+
+    wanted: tuple[str, ...] = ()
+    """The patches whose lanes could."""
+    floor: float = -np.inf
+    """What any choice counts at least that drags no bases along, be its lanes made or not."""
+    least: tuple[int, ...] | None = None
+    """The choice that counts no more than that, where there is one of lanes that are made."""
 
 
 class Graph:
@@ -47,6 +61,7 @@ class Graph:
         self.tables: dict[tuple[int, int], Bools] = {}
         in_modes = len(self.patches) > MANY and any(x.drag is not None for x in own.lanes)
         self.modes: list[list[Bools]] = _masks(self.options, modes(own, found.lanes)) if in_modes else []
+        self._ways = partial(modes, own, found.lanes)
         if len(self.patches) > 1:
             self._compare(problem, own, found, in_modes=in_modes, is_bare=is_bare)
         self._treat_alike(problem, chosen or {})
@@ -97,10 +112,27 @@ class Graph:
                     best = picked
         return best
 
-    def cheaper(self, than: float) -> tuple[int, ...] | None:
-        """A choice that counts less, where a little work finds one; not for graphs with several ways to drag bases."""
+    def soon(self) -> tuple[tuple[int, ...] | None, bool]:
+        """The cheapest choice as far as a few branches tell, and whether it is."""
+        if self.modes:
+            return self.cheapest(), True
+        self.gaps.clear()
+        gaps: list[float] = []
         self.work.charge(SEARCHING * len(self.costs))
-        return cheaper(self.costs, self.tables, frozenset(self.forbidden), than)
+        tables, forbidden = self.tables, frozenset(self.forbidden)
+        picked = cheapest(self.costs, tables, forbidden, gaps, self.tangled, self.work, is_brief=True)
+        return picked, not gaps
+
+    def cheaper(self, than: float, work: Work) -> tuple[tuple[int, ...] | None, float]:
+        """The cheapest choice if it counts less, as far as the work goes, and what any counts at least.
+
+        Not for graphs with several ways to drag bases.
+        """
+        self.work.charge(SEARCHING * len(self.costs))
+        before = work.spent
+        found = cheaper(self.costs, self.tables, frozenset(self.forbidden), than, work)
+        self.work.charge(work.spent - before)
+        return found
 
     def _cheapest(self, costs: list[Array]) -> tuple[int, ...] | None:
         self.work.charge(SEARCHING * len(costs))
@@ -111,16 +143,20 @@ class Graph:
         if any(places.get(o.patch, (None,))[0] not in o.lanes for o in self.options):
             return None
         picked = tuple(o.index(places[o.patch]) for o in self.options)
+        return picked if self._is_free(picked) else None
+
+    def _is_free(self, picked: tuple[int, ...]) -> bool:
+        """Whether nothing is known against a choice."""
         is_free = all(np.isfinite(cost[i]) for cost, i in zip(self.costs, picked, strict=True))
         is_free &= not any(table[picked[g], picked[h]] for (g, h), table in self.tables.items())
-        is_free &= not any(all(picked[g] in many for g, many in combination) for combination in self.forbidden)
-        return picked if is_free else None
+        return is_free and not any(all(picked[g] in many for g, many in combination) for combination in self.forbidden)
 
-    def promising(self, prices: Mapping[str, float], known: float) -> list[str]:
-        """The patches with lanes not made yet that could be part of a choice cheaper than the one known.
+    def promising(self, prices: Mapping[str, float], known: float) -> Outlook:
+        """What lanes that are not made yet could be part of a choice cheaper than the one known.
 
         A promise, a lane at its patch's price of `prices` that conflicts with nothing, takes the place of the patch's
-        deletion: where the cheapest choice takes no promise, no lane that is not made yet can better it.
+        deletion: where the cheapest choice takes no promise, no lane that is not made yet can better it, and none that
+        is made, but for those that drag bases along.
         """
         last = {g: len(self.costs[g]) - 1 for g, p in enumerate(self.patches) if p in prices}
         costs = [self._undragged(g) for g in range(len(self.patches))]
@@ -131,18 +167,32 @@ class Graph:
         gaps: list[float] = []
         picked = cheapest(costs, tables, forbidden, gaps, work=self.work)
         if picked is None:
-            return []
+            return Outlook()
         if gaps:
-            return [self.patches[g] for g in last]
-        if sum(float(cost[i]) for cost, i in zip(costs, picked, strict=True)) >= known:
-            return []
-        return [self.patches[g] for g, end in last.items() if picked[g] == end]
+            return Outlook(tuple(self.patches[g] for g in last))
+        floor = sum(float(cost[i]) for cost, i in zip(costs, picked, strict=True))
+        wanted = tuple(self.patches[g] for g, end in last.items() if picked[g] == end)
+        # What was left out beside promises may still hold for other options.
+        return Outlook(wanted if floor < known else (), floor, picked if not wanted and self._is_free(picked) else None)
 
     def _undragged(self, group: int) -> Array:
         """What the options of a patch cost beside lanes not made yet: those come straight down, none drags along."""
         options = self.options[group]
         drags = np.repeat([x.drag is not None for x in options.lanes], len(options.windows))
         return np.where(np.append(drags, False), np.inf, self.costs[group])
+
+    def is_cheapest(self, picked: tuple[int, ...], floor: float) -> bool:
+        """Whether nothing counts less than a choice, where what drags no bases along counts at least a `floor`.
+
+        Where some lane drags bases along, so do all that are not deleted, and in the same way.
+        """
+        weight = self.weight(picked) - EPSILON
+        numbers = {x.number for o in self.options for x in o.lanes if x.drag is not None}
+        ways = (
+            _masks(self.options, [way for way in self._ways() if way & numbers]) if numbers and floor >= weight else []
+        )
+        least = (sum(float(cost[mask].min()) for mask, cost in zip(way, self.costs, strict=True)) for way in ways)
+        return min(floor, *least, np.inf) >= weight
 
     def weight(self, picked: tuple[int, ...]) -> float:
         """What a choice counts in the search."""

@@ -13,11 +13,14 @@ from foldfab.folding.lanes import Lane
 from foldfab.folding.master import Cut, Master, Order
 from foldfab.folding.options import Options
 from foldfab.folding.problem import Problem
-from foldfab.folding.prospects import Prospects, unhindered
+from foldfab.folding.prospects import Prospects, ruled_out, unhindered
 from foldfab.folding.scene import Scene
 from foldfab.folding.symmetry import Signature, is_less, signature, unlike
 from foldfab.folding.units import Unit
 from foldfab.geometry.arrays import Bools
+
+NO_MORE = 1e-5
+"""What preferences between options of equal cost may add up to."""
 
 Place = tuple[int, tuple[int, int]] | None
 """A lane by its number and a window; None where a patch is deleted."""
@@ -106,10 +109,9 @@ def _finite(options: Options) -> list[int]:
 
 def _all_of(group: Group, unit: Unit) -> Prospects:
     """All lanes of a unit that are known by now, whatever stands around it."""
-    steps = group.problem.options.shrink_steps
     free = unhindered(group.problem, repertoire(group.problem, unit))
     lanes = {p: group.lanes[p] for p in unit.patches}
-    blocked = {x.number: np.full(steps, x.is_out) for many in lanes.values() for x in many}
+    blocked = {x.number: ruled_out(group.problem, x) for many in lanes.values() for x in many}
     return replace(free, lanes=lanes, blocked=blocked)
 
 

@@ -6,55 +6,90 @@ knuckles that suit. Where a choice of it counts less, the lanes whose hinges are
 stretch of knuckles that holds and that suits all; until a choice holds, or none is cheaper. Then they are made in every
 place.
 
-This only finds options, and what is not found with little work is left: it bounds nothing.
+What is asked is a relaxation, so that its answers bound any such choice. Where the work ends first, its last answer is
+what the unit counts at least.
 """
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from foldfab.folding.basic import WHOLE
-from foldfab.folding.choose import cheaper
-from foldfab.folding.conflict import are_in_the_way, may_be_interrupted
+from foldfab.folding.choose import EPSILON, cheaper
+from foldfab.folding.conflict import are_in_the_way, compare, may_be_interrupted
 from foldfab.folding.graph import Graph
 from foldfab.folding.lanes import Lane
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import unhindered
-from foldfab.folding.repertoire import Place, Repertoire, Stretch, interrupt, pieces_met, stretches
+from foldfab.folding.repertoire import Place, Repertoire, Stretch, interrupt, lane, pieces_met, stretches
+from foldfab.folding.work import Work
 
 WORTH = 2e-3
 """By how much a choice must be cheaper to be worth the lanes that it takes."""
-ROUNDS = 4
-"""How often lanes are made for a unit before it is left as it is."""
+ROUNDS = 8
+"""How many choices are tried for a unit before it is left as it is."""
+ENOUGH = 0.5
+"""Work after which it is left as it is, s."""
 
 
-def interrupted(problem: Problem, own: Repertoire, graph: Graph, picked: tuple[int, ...] | None) -> bool:
-    """Adds the lanes by which a unit has a cheaper choice than was picked from its graph; whether there are any."""
+def interrupted(
+    problem: Problem, own: Repertoire, graph: Graph, picked: tuple[int, ...] | None
+) -> tuple[bool, float]:  # fmt: skip
+    """Adds the lanes by which a unit has a cheaper choice than was picked from its graph; whether there are any, and
+    what any choice of such lanes counts at least, if that is worth it and was not found out to the end.
+    """
     weight = graph.weight(picked) if picked is not None else np.inf
-    if graph.modes or weight <= _least(problem, own) + WORTH or not are_in_the_way(own):
-        return False
-    before = dict(own.plain)
+    least = _least(problem, own)
+    if graph.modes or weight <= least + WORTH or not are_in_the_way(own):
+        return False, np.inf
+    before, work, floor = dict(own.plain), Work(ENOUGH), least
+    vain: list[Mapping[str, Place]] = []
     for _ in range(ROUNDS):
-        bare = Graph(problem, own, unhindered(problem, own), np.zeros(3), is_bare=True)
-        best = bare.cheaper(weight - WORTH)
+        bare = _bare(problem, own, vain)
+        best, least = bare.cheaper(weight - WORTH, work)
+        floor = max(floor, least)
         if best is None:
             break
         places = {o.patch: o.place(i) for o, i in zip(bare.options, best, strict=True)}
         chosen = {p: place for p, place in places.items() if place is not None}
-        if not _are_hindered(own, chosen):
-            _settle(problem, own, chosen, before)
-            return True
-        agreed = _agreeing(problem, own, chosen)
-        for patch, stretch in agreed.items():
-            interrupt(problem, own, chosen[patch][0], [stretch])
-        if not agreed:
-            break
+        agreed = _agreeing(problem, own, chosen) if _are_hindered(own, chosen) else {}
+        made = chosen | _made(problem, own, chosen, agreed)
+        if not _are_hindered(own, made):
+            _settle(problem, own, made, before)
+            return True, floor if floor < bare.weight(best) - EPSILON else np.inf
+        vain += [chosen] if not agreed else []
     own.plain.update(before)
     own.interrupted.clear()
-    return False
+    return False, floor if floor < weight - WORTH - EPSILON else np.inf
+
+
+def _bare(problem: Problem, own: Repertoire, vain: Sequence[Mapping[str, Place]]) -> Graph:
+    """The conflict graph in which hinges may be interrupted, without choices that were tried in vain."""
+    bare = Graph(problem, own, unhindered(problem, own), np.zeros(3), is_bare=True)
+    for many in vain:
+        places = ((g, many.get(o.patch)) for g, o in enumerate(bare.options))
+        bare.forbidden.add(tuple((g, (bare.options[g].index(place),)) for g, place in places))
+    return bare
+
+
+def _made(
+    problem: Problem, own: Repertoire, chosen: Mapping[str, Place], agreed: Mapping[str, Stretch]
+) -> dict[str, Place]:
+    """The lanes that a choice takes instead where hinges keep their knuckles as agreed."""
+    made: dict[str, Place] = {}
+    for patch, (first, end) in agreed.items():
+        x, window = chosen[patch]
+        interrupt(problem, own, x, [(first, end)])
+        steps = problem.options.shrink_steps
+        found = lane(problem, own, patch, replace(x.variant, hinged=(first / steps, end / steps)))
+        if found is not None and found in own.plain[patch]:
+            made[patch] = found, window
+    compare(problem, own, [x for x, _ in made.values()])
+    return made
 
 
 def _settle(
@@ -92,7 +127,7 @@ def _agreeing(problem: Problem, own: Repertoire, chosen: Mapping[str, Place]) ->
         if pieces_met(own.parts, hinges[g], hinges[h]) is not None:
             tables[g, h] = np.array([[_meet(own, hinges[g], s, hinges[h], t) for t in able[h]] for s in able[g]])
     costs = [np.array([float(s != chosen[p][1]) for s in own_able]) for p, own_able in zip(loose, able, strict=True)]
-    best = cheaper(costs, tables, frozenset(), np.inf) or ()
+    best = cheaper(costs, tables, frozenset(), np.inf)[0] or ()
     return {p: many[i] for p, many, cost, i in zip(loose, able, costs, best, strict=False) if cost[i]}
 
 

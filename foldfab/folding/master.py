@@ -131,6 +131,8 @@ class Master:
         self.solver.parameters.linearization_level = 0
         # Nor does probing: the programs are small, and solved again after every few cuts.
         self.solver.parameters.cp_model_probing_level = 0
+        # Nor does presolve where no options exclude each other: it takes longer than all the rest.
+        self.solver.parameters.cp_model_presolve = self.literals > 0
         self.solver.parameters.max_deterministic_time = work
         status = self.solver.solve(self.model)
         spent = float(self.solver.response_proto.deterministic_time) + POSING + READING * self.literals

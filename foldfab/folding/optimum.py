@@ -20,7 +20,7 @@ import numpy as np
 from foldfab.folding import basic
 from foldfab.folding.aside import bring_back
 from foldfab.folding.congruent import repertoire
-from foldfab.folding.group import Group, cut_of, posed
+from foldfab.folding.group import NO_MORE, Group, cut_of, posed
 from foldfab.folding.options import DELETION
 from foldfab.folding.ordering import Ordered, after, neighbouring
 from foldfab.folding.problem import Problem
@@ -31,8 +31,6 @@ from foldfab.folding.symmetry import Signature
 from foldfab.folding.unit_fold import UnitFold
 from foldfab.folding.work import PLAYING
 
-NO_MORE = 1e-5
-"""What preferences between options of equal cost may add up to."""
 BUILDING = 5e-2
 """Charge for a constraint program that is built, s."""
 SHARE = 0.5
@@ -61,7 +59,7 @@ def optimal(
     order = [f.unit.name for f in known.folds] if known else sorted(floor)
     best = _best(groups, folds) if is_whole else [_weight(known) if known else np.inf]
     settled = [_is_settled(names, b, floor, folds if is_whole else {}) for names, b in zip(groups, best, strict=True)]
-    bound = fsum(b for b, done in zip(best, settled, strict=True) if done)
+    bound = fsum(_claimed(problem, g, b, floor) for g, b, done in zip(groups, best, settled, strict=True) if done)
     left = [(names, b) for names, b, done in zip(groups, best, settled, strict=True) if not done]
     rest_counts = bound + fsum(floor[n] for names, _ in left for n in names)
     for k, (names, least) in enumerate(left):
@@ -69,7 +67,7 @@ def optimal(
         others = [folds[n] for n in order if n not in names] if is_whole else []
         group = _group(problem, scene, others, {n: floor[n] for n in names}, least)
         found, group_bound = _solved(group, problem.work.left / (len(left) - k))
-        bound += min(group_bound, least)
+        bound += _claimed(problem, names, min(group_bound, least), floor)
         if found is not None:
             rest = [n for n in order if n not in names] if is_whole else []
             folds = {**{n: folds[n] for n in rest}, **{f.unit.name: f for f in found}}
@@ -87,8 +85,16 @@ def lower_bound(problem: Problem, scene: Scene, known: Ordered, floor: Mapping[s
     groups = neighbouring(problem, scene)
     best = _best(groups, folds)
     return fsum(
-        b if _is_settled(g, b, floor, folds) else fsum(floor[n] for n in g) for g, b in zip(groups, best, strict=True)
+        _claimed(problem, g, b, floor) if _is_settled(g, b, floor, folds) else fsum(floor[n] for n in g)
+        for g, b in zip(groups, best, strict=True)
     )
+
+
+def _claimed(problem: Problem, names: set[str], bound: float, floor: Mapping[str, float]) -> float:
+    """What a group counts at least, given what it does over all lanes there are: there might be cheaper ones."""
+    units = (problem.tree.units[n] for n in names)
+    is_open = any(unit in problem.least and problem.least[unit].spare > NO_MORE for unit in units)
+    return min(bound, fsum(floor[n] for n in names)) if is_open else bound
 
 
 def _best(groups: list[set[str]], folds: Mapping[str, UnitFold]) -> list[float]:

@@ -21,6 +21,18 @@ from foldfab.recipe.model import FoldOptions, Part
 from foldfab.scaffold.model import Scaffold
 
 
+@dataclass(frozen=True, slots=True)
+class Crossed:
+    """What a way of folding crosses without thickness, as far as a rehearsal has shown."""
+
+    pieces: tuple[bool, ...]
+    """(N_s,) which pieces of the patch do."""
+    by: tuple[str, ...]
+    """The owners of what they cross, sorted."""
+    is_always: bool = False
+    """Whether they do in whatever order the units fold."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Problem:
     """A scaffold with thickness, its units, and a memory that only ever grows."""
@@ -49,12 +61,14 @@ class Problem:
     """By patch that has one, its mirror image (`symmetry`), where the recipe asks for it."""
     banned: frozenset[tuple[str, Variant]] = frozenset()
     """Variants, without plinths, that a rehearsal of the whole fold has shown to be in the way."""
+    crossed: Mapping[tuple[str, Variant], Crossed] = field(default_factory=dict)
+    """By patch and plain variant, what a rehearsal of the whole fold as sheets has shown to cross."""
     repertoires: dict[Unit, Any] = field(default_factory=dict)
     """What the patches of each unit can do, by unit."""
     poses: dict[object, Any] = field(default_factory=dict)
     """The first unit of each kind, by what it looks like wherever it stands."""
-    least: dict[Unit, float] = field(default_factory=dict)
-    """What the cheapest choice of each unit counts, whatever stands around it."""
+    least: dict[Unit, Any] = field(default_factory=dict)
+    """The cheapest choice of each unit, whatever stands around it."""
     solved: dict[tuple[Any, ...], Any] = field(default_factory=dict)
     """Solutions of units, by all that they depend on: first the key of the surroundings, which begins with the unit."""
     begun: dict[tuple[Any, ...], Any] = field(default_factory=dict)
@@ -79,14 +93,36 @@ class Problem:
 def without(problem: Problem, banned: frozenset[tuple[str, Variant]]) -> Problem:
     """The problem with these variants banned, and nothing remembered that they could have been part of."""
     touched = {problem.unit_of[patch] for patch, _ in banned ^ problem.banned}
+    kept = {unit: own for unit, own in problem.repertoires.items() if unit in set(problem.units) - touched}
+    return replace(_forgetting(problem, touched), banned=banned, poses=dict(problem.poses), repertoires=kept)
+
+
+def kept_clear(problem: Problem, crossed: Mapping[tuple[str, Variant], Crossed]) -> Problem:
+    """The problem in which these pieces are ruled out as well, and nothing remembered of what their units can do."""
+    merged = dict(problem.crossed)
+    for key, more in crossed.items():
+        known = merged.get(key, more)
+        pieces = tuple(a or b for a, b in zip(known.pieces, more.pieces, strict=True))
+        merged[key] = Crossed(pieces, tuple(sorted({*known.by, *more.by})), known.is_always and more.is_always)
+    touched = {problem.unit_of[patch] for patch, _ in crossed}
+    own = {u: replace(known, least={}) if u in touched else known for u, known in problem.repertoires.items()}
+    return replace(_forgetting(problem, touched), crossed=merged, repertoires=own)
+
+
+def as_sheet(variant: Variant) -> Variant:
+    """A variant without what is made of it for the sake of thickness."""
+    return replace(variant, pads=(0.0, 0.0), extra=0.0, hinged=basic.WHOLE)
+
+
+def _forgetting(problem: Problem, touched: set[Unit]) -> Problem:
+    """The problem with no solutions of some units in its memory."""
     # Units merged into one may hold any of them.
-    kept = {unit for unit in problem.units if unit not in touched}
+    kept = set(problem.units) - touched
     return replace(
-        problem, banned=banned, poses=dict(problem.poses),
-        repertoires={unit: own for unit, own in problem.repertoires.items() if unit in kept},
+        problem,
         solved={key: found for key, found in problem.solved.items() if key[0][0] in kept},
         begun={key: found for key, found in problem.begun.items() if key[0][0] in kept},
-        least={unit: value for unit, value in problem.least.items() if unit in kept},
+        least={unit: choice for unit, choice in problem.least.items() if unit in kept},
         hopeless={unit: why for unit, why in problem.hopeless.items() if unit in kept},
     )  # fmt: skip
 

@@ -16,10 +16,11 @@ import numpy as np
 from foldfab.folding.basic import WHOLE
 from foldfab.folding.lanes import Lane
 from foldfab.folding.outline import leaves_box
-from foldfab.folding.problem import Problem
+from foldfab.folding.problem import Crossed, Problem, as_sheet
 from foldfab.folding.repertoire import Repertoire, cuts_of, far_shift, lane, stops_early, swept
 from foldfab.folding.space import Batch, blocked, carried
 from foldfab.folding.surroundings import Surroundings
+from foldfab.folding.work import LOOKING
 from foldfab.geometry.arrays import Bools
 
 PAD_SHARE = 0.4
@@ -58,8 +59,10 @@ def prospects(problem: Problem, own: Repertoire, around: Surroundings, *, in_pla
         raised = [r for x in low for r in _raised(problem, own, around, x, room, met)]
         lanes[patch] = (*many, *raised)
     _raise_partners(problem, own, around, lanes, room, met)
-    owners = {n: tuple(sorted({_owner(around, i) for i in found})) for n, found in met.items()}
-    return Prospects(lanes, room, owners, met)
+    owners = {n: {_owner(around, i) for i in found} for n, found in met.items()}
+    for n in owners if problem.crossed else ():
+        owners[n].update(_crossed(problem, own.lanes[n]).by)
+    return Prospects(lanes, room, {n: tuple(sorted(names)) for n, names in owners.items()}, met)
 
 
 def blocked_pieces(problem: Problem, own: Repertoire, around: Surroundings, many: list[Lane]) -> Room:
@@ -78,9 +81,20 @@ def in_the_way(problem: Problem, own: Repertoire, around: Surroundings, many: li
 
 def unhindered(problem: Problem, own: Repertoire) -> Prospects:
     """What the patches of a unit could do if nothing stood around it."""
-    steps = problem.options.shrink_steps
-    blocked = {x.number: np.full(steps, x.is_out) for many in own.plain.values() for x in many}
+    blocked = {x.number: ruled_out(problem, x) for many in own.plain.values() for x in many}
     return Prospects(own.plain, blocked, {}, {})
+
+
+def ruled_out(problem: Problem, x: Lane) -> Bools:
+    """Which pieces (N_s,) of a lane are out of the question wherever it stands."""
+    found = np.full(problem.options.shrink_steps, x.is_out)
+    return found | np.array(_crossed(problem, x).pieces) if problem.crossed else found
+
+
+def _crossed(problem: Problem, x: Lane) -> Crossed:
+    """What a lane crosses without thickness, whatever was made of it for the sake of it."""
+    nothing = Crossed((False,) * problem.options.shrink_steps, ())
+    return problem.crossed.get((x.patch, as_sheet(x.variant)), nothing)
 
 
 def _owner(around: Surroundings, box: int) -> str:
@@ -92,11 +106,14 @@ def _look_at(
 ) -> None:
     """Finds out which pieces of the lanes have no room, and what they meet."""
     fresh = [x for x in many if x.number not in around.met]
+    problem.work.charge(LOOKING * len(fresh))
     found, hit = _held_against(problem, own, around, fresh)
     for x in fresh:
         if x.is_out or (problem.options.stay_in_box and leaves_the_box(problem, own, around, x)):
             found[x.number] = np.ones_like(found[x.number])
             hit[x.number].add(-1)
+        elif problem.crossed:
+            found[x.number] |= ruled_out(problem, x)
         around.met[x.number] = found[x.number], hit[x.number]
     for x in many:
         room[x.number], met[x.number] = around.met[x.number]

@@ -18,7 +18,7 @@ from foldfab.folding.options import Alike
 from foldfab.folding.press import Motion
 from foldfab.folding.problem import Problem, clear_height, levels
 from foldfab.folding.prospects import PAD_SHARE
-from foldfab.folding.scene import Scene
+from foldfab.folding.scene import Scene, Solid
 from foldfab.folding.sheets import crossings, swings_into
 from foldfab.folding.simulate import clashes
 from foldfab.folding.site import Site
@@ -26,6 +26,9 @@ from foldfab.folding.surroundings import Surroundings
 from foldfab.folding.units import Unit
 from foldfab.folding.work import PLAYING
 from foldfab.geometry.boxes import Boxes
+
+SAME = 1e-6
+"""What has come no further than this against each other has not moved, mm."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,17 +135,27 @@ def _played(
 
 
 def _swung(problem: Problem, chains: tuple[Chain, ...], around: Surroundings) -> tuple[tuple[str, str], ...]:
-    """By T-scaffold and what stands on the same base, as wide as it is left, which of them cross as sheets."""
+    """By T-scaffold, which of what stands to its base as in the open furniture it crosses as a sheet: bases, and what
+    is not folded yet, as wide as it is left.
+    """
     found: list[tuple[str, str]] = []
-    shown = sorted(
-        ((s.owner, s.boxes) for s in around.solids if s.state == "open" and s.owner in problem.sites),
-        key=lambda of: of[0],
-    )
     for chain in (c for c in chains if c.far is None):
-        beside = ((problem.sites[owner], boxes) for owner, boxes in shown if owner != chain.patch)
-        near = [_left_of(site, boxes) for site, boxes in beside if chain.anchor in (site.anchor, site.far)]
-        found += [(chain.patch, name) for name in swings_into(problem.scaffold, chain, near)]
+        stands = _standing_to(around, chain.anchor)
+        others = sorted((s for s in stands if s.owner not in (chain.patch, chain.anchor)), key=lambda s: s.owner)
+        near = [_left_of(problem.sites[s.owner], s.boxes) for s in others if s.state == "open"]
+        bases = [problem.scaffold.base(s.owner) for s in others if s.state == "base"]
+        found += [(chain.patch, name) for name in swings_into(problem.scaffold, chain, near, bases)]
     return tuple(found)
+
+
+def _standing_to(around: Surroundings, anchor: str) -> list[Solid]:
+    """What is near a unit and stands to one of its bases as in the open furniture."""
+    first = np.searchsorted(around.owner, np.arange(len(around.solids)))
+    start = np.array([s.boxes.center[0] for s in around.solids]).reshape(-1, 3)
+    shift = around.boxes.center[first] - start
+    (own,) = (i for i, s in enumerate(around.solids) if s.owner == anchor)
+    still = (np.abs(shift - shift[own]) < SAME).all(1)
+    return [s for s, is_still in zip(around.solids, still.tolist(), strict=True) if is_still]
 
 
 def _left_of(site: Site, boxes: Boxes) -> Site:

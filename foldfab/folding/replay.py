@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from math import fsum
 
 from foldfab.folding import basic
 from foldfab.folding.congruent import repertoire
-from foldfab.folding.group import Group, learn
+from foldfab.folding.group import NO_MORE, Group, learn
 from foldfab.folding.lessons import lessons_of, lessons_of_others, must_wait, out_of_the_box
 from foldfab.folding.master import Proposal
 from foldfab.folding.model import Chain
@@ -28,7 +29,8 @@ def played(
 ) -> tuple[tuple[UnitFold, ...] | None, bool]:
     """The folds of a proposal, and whether it holds as it is; where it does not, something was learned from that.
 
-    A unit that cannot fold as proposed folds as it best can, so that a proposal that almost holds still makes a fold.
+    A unit that cannot fold as proposed folds as it best can, so that a proposal that almost holds still makes a fold;
+    none where that cannot count less than the best one known.
     """
     problem, scene, holds = group.problem, group.scene, True
     by_name = {u.name: u for u in group.units}
@@ -36,6 +38,7 @@ def played(
         scene = shown(scene, unit.patches, _plain_chains(problem, unit, options, proposal), is_folded=False)
     folds: list[UnitFold] = []
     done: set[str] = set()
+    spare = group.known - fsum(group.floor.values())
     for name in proposal.order:
         fold = _unit_played(group, scene, by_name[name], options, proposal, done) if holds else None
         if fold is None:
@@ -46,6 +49,9 @@ def played(
             if isinstance(repaired, Refusal):
                 return None, False
             fold = repaired
+        spare -= fold.weight - group.floor[name]
+        if not holds and spare <= NO_MORE:
+            return None, False
         folds.append(fold)
         scene = after(problem, scene, fold)
         done.add(name)

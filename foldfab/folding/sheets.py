@@ -16,23 +16,21 @@ from dataclasses import replace
 
 import numpy as np
 
+from foldfab.folding.closeness import DEPTH, STEPS, crossing, depth
 from foldfab.folding.mechanism import frames
 from foldfab.folding.model import Chain
 from foldfab.folding.press import follow_down
 from foldfab.folding.site import Site
-from foldfab.folding.space import Batch, batch, meetings
+from foldfab.folding.space import Batch, batch, meetings, still
 from foldfab.geometry.arrays import Array, Bools
-from foldfab.geometry.boxes import Boxes, near_pairs, stacked
+from foldfab.geometry.boxes import Boxes, bounds, near_pairs, stacked
 from foldfab.geometry.rotation import cross
-from foldfab.scaffold.model import Scaffold
+from foldfab.scaffold.model import BasePatch, Scaffold
 
-DEPTH = 0.05
-"""How much sheets may share, mm: a layer of a print."""
+UP = np.array([0.0, 0.0, 1.0])
 RIM = 0.5
 """What is left out along all edges where nothing may be ruled out that is not that deep, mm: in their last few degrees
 sheets share little, however far they cross."""
-SKEW = 1e-5
-"""Edges whose cross product is shorter than this are parallel and make no axis of their own."""
 FRAMES = 48
 """Instants at which sheets are looked at while those between two bases fold, by even turns."""
 LAYER = 1e-6
@@ -51,34 +49,61 @@ def crossings(scaffold: Scaffold, chains: Sequence[Chain]) -> tuple[tuple[str, s
     if played is not None:
         many, never = played
         for frame, i, j in meetings(many, many, never):
-            deep = _depth(many.boxes[frame, i], many.boxes[frame, j]) > DEPTH
+            deep = depth(many.boxes[frame, i], many.boxes[frame, j]) > DEPTH
             pairs = set(zip(many.lane[i[deep]].tolist(), many.lane[j[deep]].tolist(), strict=True))
             found |= {(held[a].patch, held[b].patch) for a, b in pairs}
     return tuple(sorted((min(pair), max(pair)) for pair in found))
 
 
-def swings_into(scaffold: Scaffold, chain: Chain, standing: Sequence[Site]) -> tuple[str, ...]:
-    """The patches, sorted, that stand unfolded on the base of a T-scaffold and that it crosses as a sheet.
+def swings_into(
+    scaffold: Scaffold, chain: Chain, standing: Sequence[Site], bases: Sequence[BasePatch] = ()
+) -> tuple[str, ...]:
+    """The patches, sorted, that stand unfolded on the base of a T-scaffold and that it crosses as a sheet; and bases
+    that do not move against its own.
 
     What lies folded there lies in the plane in which the T ends. Whatever the base does, they move with it.
     """
-    patch, low = scaffold.patch(chain.patch), scaffold.base(chain.anchor).bottom
-    tip = float(patch.center[2] + chain.rise[2] * abs(patch.up[2]) * patch.length / 2)
-    count, length = len(chain.lengths), abs(tip - low) / np.cos(chain.lean)
-    near = [s for s in standing if abs((s.patch.center - chain.root) @ chain.across) < length / count + s.patch.length]
-    if not near:
+    beside = [*((s.patch.name, _open(s)) for s in standing), *((b.name, plate) for b in bases for plate in _split(b))]
+    if not beside:
         return ()
-    sheet = replace(
-        chain, root=_foot(chain, low), lengths=np.full(count, length / count), offsets=np.zeros(count + 1), pads=(0, 0)
-    )
-    swung = batch(_boxes(sheet, np.linspace(0.0, 1.0, FRAMES + 1)[:-1], 0.0), np.zeros(count, dtype=np.int64))
-    still = stacked([_open(site) for site in near])
-    stood = batch(Boxes(still.center[None], still.axes[None], still.half[None]), np.arange(len(near)))
-    found: set[str] = set()
-    for frame, i, j in meetings(swung, stood):
-        deep = _depth(swung.boxes[frame, i], stood.boxes[0, j]) > DEPTH
-        found |= {near[k].patch.name for k in j[deep].tolist()}
-    return tuple(sorted(found))
+    stood = stacked([boxes for _, boxes in beside])
+    least, most = _swept(scaffold, chain)
+    low, high = bounds(stood)
+    near = np.nonzero(((least + DEPTH < high) & (low < most - DEPTH)).all(1))[0]
+    if not len(near):
+        return ()
+    own, stood = sheet(scaffold, chain), stood[near]
+    met = crossing(lambda s: panels(own, s), lambda s: still(stood, len(s)), np.linspace(0.0, 1.0, STEPS + 1))
+    return tuple(sorted({beside[j][0] for j in near[met.any(0)].tolist()}))
+
+
+def _swept(scaffold: Scaffold, chain: Chain) -> tuple[Array, Array]:
+    """Lower and upper corner (3,) of all that a T-scaffold passes as a sheet."""
+    low, tip = ends_of(scaffold, chain)
+    length, foot = abs(tip - low) / np.cos(chain.lean), _foot(chain, low)
+    sides = [0.0, np.sign(chain.turn) * length / len(chain.lengths)] if chain.lean == 0 else [-length, length]
+    corners = np.array([foot + side * chain.across + end * chain.along for side in sides for end in chain.span])
+    corners = np.concatenate([corners, corners + chain.rise * length])
+    return corners.min(0), corners.max(0)
+
+
+def sheet(scaffold: Scaffold, chain: Chain) -> Chain:
+    """The chain as a sheet, from the plane of its base to that of its far base or to the tip of its patch."""
+    low, high = ends_of(scaffold, chain)
+    if chain.far is not None and chain.mechanism == "in-place":
+        return _sheet(chain, {chain.anchor: low, chain.far: high})
+    count = len(chain.lengths)
+    lengths = np.full(count, abs(high - low) / np.cos(chain.lean) / count)
+    return replace(chain, root=_foot(chain, low), lengths=lengths, offsets=np.zeros(count + 1), pads=(0.0, 0.0))
+
+
+def ends_of(scaffold: Scaffold, chain: Chain) -> tuple[float, float]:
+    """Heights of a chain's base and of its far base or its tip as a sheet, mm."""
+    low = scaffold.base(chain.anchor).bottom
+    if chain.far is not None:
+        return low, scaffold.base(chain.far).bottom
+    patch = scaffold.patch(chain.patch)
+    return low, float(patch.center[2] + chain.rise[2] * abs(patch.up[2]) * patch.length / 2)
 
 
 def sheets(scaffold: Scaffold, held: Sequence[Chain], rim: float = 0.0) -> tuple[Batch, Bools] | None:
@@ -95,6 +120,20 @@ def sheets(scaffold: Scaffold, held: Sequence[Chain], rim: float = 0.0) -> tuple
     low = min(height.values())
     down = {name: z - low for name, z in height.items()}
     return _played({i: _sheet(held[i], height) for i in near}, down, rim), ~meet
+
+
+def outlines(base: BasePatch) -> Boxes:
+    """The outlines (n,) of a base in its plane."""
+    center = np.array([[*outline.center, base.bottom] for outline in base.outlines])
+    half = np.array([[*outline.half, 0.0] for outline in base.outlines])
+    axes = np.array([[[x, y, 0.0], [-y, x, 0.0], UP] for x, y in (outline.along for outline in base.outlines)])
+    return Boxes(center, axes, half)
+
+
+def _split(base: BasePatch) -> list[Boxes]:
+    """The outlines (1,) of a base."""
+    whole = outlines(base)
+    return [whole[i : i + 1] for i in range(len(whole))]
 
 
 def _share_room(held: Sequence[Chain], height: Mapping[str, float]) -> Bools:
@@ -159,32 +198,20 @@ def _played(sheets: Mapping[int, Chain], down: Mapping[str, float], rim: float) 
     many: list[Boxes] = []
     for i, sheet in sheets.items():
         near, far = (np.maximum(down[name] - press, 0.0) for name in (sheet.anchor, sheet.far or ""))
-        boxes = _boxes(sheet, follow_down(sheet, far - near), rim)
+        boxes = panels(sheet, follow_down(sheet, far - near), rim)
         boxes.center[..., 2] += i * LAYER - near[:, None]
         many.append(boxes)
     whole = Boxes(*(np.concatenate([getattr(b, of) for b in many], axis=1) for of in ("center", "axes", "half")))
     return batch(whole, np.repeat(list(sheets), [len(sheet.lengths) for sheet in sheets.values()]))
 
 
-def _boxes(sheet: Chain, progress: Array, rim: float) -> Boxes:
+def panels(sheet: Chain, progress: Array, rim: float = 0.0) -> Boxes:
     """The panels (k, m) of a sheet at each progress (k,), seen from its anchor, `rim` mm narrower all around."""
     origin, turned = frames(sheet, progress)
     middle = origin + turned[:, :, 2] * (sheet.lengths[:, None] / 2) + sheet.along * float(sheet.span.mean())
     half = np.zeros_like(middle)
     half[..., 1], half[..., 2] = float(np.ptp(sheet.span)) / 2 - rim, sheet.lengths / 2 - rim
     return Boxes(middle, turned, half)
-
-
-def _depth(a: Boxes, b: Boxes) -> Array:
-    """(n,) the least way that would part two collections pair by pair, mm; less than 0 where they are apart."""
-    crossed = np.cross(a.axes[:, :, None], b.axes[:, None]).reshape(-1, 9, 3)
-    size = np.linalg.norm(crossed, axis=-1)
-    axes = np.concatenate([a.axes, b.axes, crossed / np.maximum(size, SKEW)[..., None]], axis=1)
-    reach = sum(np.einsum("nmk,nk->nm", np.abs(np.einsum("nmj,nkj->nmk", axes, c.axes)), c.half) for c in (a, b))
-    shared = reach - np.abs(np.einsum("nij,nj->ni", axes, b.center - a.center))
-    shared[:, 6:][size < SKEW] = np.inf
-    least: Array = shared.min(axis=1)
-    return least
 
 
 def _press(pairs: Sequence[tuple[float, float]]) -> Array:

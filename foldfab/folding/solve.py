@@ -11,19 +11,21 @@ from foldfab.errors import FoldingError, LossError
 from foldfab.folding import anatomy, basic
 from foldfab.folding.bottom_up import bottom_up
 from foldfab.folding.demands import require_allowed, require_choices, require_variants
+from foldfab.folding.group import NO_MORE
 from foldfab.folding.improve import improved, weight
 from foldfab.folding.knuckles import given_back
 from foldfab.folding.model import FoldSolution, Modification, Step, Thickness
-from foldfab.folding.optimum import NO_MORE, lower_bound, optimal
+from foldfab.folding.optimum import lower_bound, optimal
 from foldfab.folding.options import DELETION
 from foldfab.folding.ordering import Ordered, floors, greedy, travel
-from foldfab.folding.problem import Problem, without
+from foldfab.folding.problem import Problem, kept_clear, without
 from foldfab.folding.rehearsal import first_clash
 from foldfab.folding.scene import Scene, open_scene
 from foldfab.folding.site import sites, slab
 from foldfab.folding.soundness import disconnected, rigid_patches
 from foldfab.folding.symmetry import twins
 from foldfab.folding.tree import unit_tree
+from foldfab.folding.trespass import trespasses
 from foldfab.folding.unit_fold import Choice, UnitFold
 from foldfab.folding.units import decompose
 from foldfab.folding.work import Work
@@ -77,19 +79,21 @@ def _solved(problem: Problem, most: int | None, worth: int | None) -> FoldSoluti
     require_variants(problem)
     require_allowed(problem)
     _require_worth(choices, most)
-    least: float | None = None
+    most_proven = np.inf
     for _ in range(REHEARSALS):
         scene = open_scene(problem)
         ordered, bound = _ordered(problem, scene, choices, worth)
-        # What a rehearsal forbids belongs to one order; the bound is over all options.
-        least = bound if least is None else least
-        bound = min(bound, least)
+        bound = min(bound, most_proven)
         met = first_clash(problem, scene, ordered.folds)
-        if met is None:
+        crossed = trespasses(problem, ordered.folds) if met is None else {}
+        if met is None and not crossed:
             return solution(problem, bound, ordered)
-        problem = without(problem, problem.banned | {met})
+        if not crossed or not all(c.is_always for c in crossed.values()):
+            # What a rehearsal forbids belongs to one order; the bound is over all options.
+            most_proven = bound
+        problem = without(problem, problem.banned | {met}) if met else kept_clear(problem, crossed)
         choices = floors(problem)
-    told = ", ".join(sorted({patch for patch, _ in problem.banned}))
+    told = ", ".join(sorted({patch for patch, _ in (*problem.banned, *problem.crossed)}))
     raise FoldingError(f"no folding solution found: {told} stay in the way of what folds before; try another thickness")
 
 

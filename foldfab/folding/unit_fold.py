@@ -16,7 +16,7 @@ from foldfab.folding.aside import bring_back
 from foldfab.folding.basic import Option, Variant
 from foldfab.folding.conflict import compare_sheets
 from foldfab.folding.congruent import repertoire
-from foldfab.folding.graph import Graph, Lesson
+from foldfab.folding.graph import Graph, Lesson, Outlook
 from foldfab.folding.interruption import interrupted
 from foldfab.folding.model import Chain
 from foldfab.folding.options import DELETION
@@ -66,9 +66,11 @@ class Choice:
     """One option for each patch of a unit, not yet played."""
 
     weight: float
-    """What it counts in the search."""
+    """What it counts in the search, or less where that is not proven."""
     places: Mapping[str, Place]
     """By patch that is kept, its lane and its window in N_s-ths."""
+    spare: float = 0.0
+    """By how much hinges that are interrupted might better it, where the work did not suffice to tell."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,19 +140,26 @@ def fold_alone(problem: Problem, scene: Scene, unit: Unit) -> UnitFold | Refusal
 
 
 def least_choice(problem: Problem, own: Repertoire) -> Choice:
-    """The cheapest choice without conflicts, whatever stands around the unit and however it is played."""
+    """The cheapest choice without conflicts, whatever stands around the unit and however it is played; found once."""
+    if own.unit not in problem.least:
+        problem.least[own.unit] = _least_choice(problem, own)
+    found: Choice = problem.least[own.unit]
+    return found
 
+
+def _least_choice(problem: Problem, own: Repertoire) -> Choice:
     def posed() -> tuple[Prospects, Graph]:
         found = unhindered(problem, own)
         return found, Graph(problem, own, found, np.zeros(3))
 
     def settled() -> tuple[Graph, tuple[int, ...] | None]:
         found, graph = posed()
-        return _bettered(problem, own, found, graph, graph.cheapest(), posed)[1:]
+        return _bettered(problem, own, found, graph, None, posed)[1:]
 
     graph, picked = settled()
     # Only here, before anything rests on what the unit counts at least.
-    if interrupted(problem, own, graph, picked):
+    found_any, floor = interrupted(problem, own, graph, picked)
+    if found_any:
         graph, picked = settled()
     if picked is not None and not own.sheets and crossings(problem.scaffold, _chains(problem, graph, picked)):
         compare_sheets(problem, own)
@@ -162,8 +171,8 @@ def least_choice(problem: Problem, own: Repertoire) -> Choice:
     if not graph.gaps:
         own.least.update(places)
     # Where the work did not suffice to prove the choice, what it may be too dear by is no part of what must be paid.
-    weight = problem.least[own.unit] = graph.weight(picked) - sum(graph.gaps)
-    return Choice(weight, places)
+    weight = graph.weight(picked) - sum(graph.gaps)
+    return Choice(min(weight, floor), places, max(weight - floor, 0.0))
 
 
 def _chains(problem: Problem, graph: Graph, picked: tuple[int, ...]) -> list[Chain]:
@@ -247,48 +256,74 @@ def _picked(
         found = prospects(problem, own, around, in_place=in_place)
         return found, Graph(problem, own, found, around.offset, learned, scene.chosen)
 
-    return _bettered(problem, own, found, graph, known or graph.cheapest(), posed)
+    return _bettered(problem, own, found, graph, known, posed)
 
 
 def _bettered(
-    problem: Problem, own: Repertoire, found: Prospects, graph: Graph, picked: tuple[int, ...] | None,
+    problem: Problem, own: Repertoire, found: Prospects, graph: Graph, known: tuple[int, ...] | None,
     posed: Callable[[], tuple[Prospects, Graph]],
 ) -> tuple[Prospects, Graph, tuple[int, ...] | None]:  # fmt: skip
     """The cheapest choice once all lanes are made that could better it, and the graph `posed` with them.
 
-    That the next ones will better it is seen far sooner than what is the cheapest choice until then.
+    Lanes that only go with deletions are among them where something has to go.
     """
-    while True:
-        while wanted := _wanted(problem, own, graph, picked):
-            weight = graph.weight(picked) if picked is not None else -np.inf
-            while wanted:
-                extend(problem, own, wanted)
-                found, graph = posed()
-                wanted = _bettering(problem, own, graph, weight)
-            picked = graph.cheapest()
-        if not own.aside or (picked is not None and graph.weight(picked) < DELETION):
-            return found, graph, picked
+    found, graph, best = _best_offered(problem, own, found, graph, known, posed)
+    if own.aside and (best is None or graph.weight(best) >= DELETION):
         bring_back(own)
-        found, graph = posed()
-        picked = graph.cheapest()
+        found, graph, best = _best_offered(problem, own, *posed(), None, posed)
+    return found, graph, best
 
 
-def _wanted(problem: Problem, own: Repertoire, graph: Graph, picked: tuple[int, ...] | None) -> list[str]:
-    """The patches with lanes not made yet that could better a choice; all such where there is no choice."""
-    if picked is None:
-        return [p for p in own.unit.patches if own.later[p]]
-    return _bettering(problem, own, graph, graph.weight(picked))
+def _best_offered(
+    problem: Problem, own: Repertoire, found: Prospects, graph: Graph, known: tuple[int, ...] | None,
+    posed: Callable[[], tuple[Prospects, Graph]],
+) -> tuple[Prospects, Graph, tuple[int, ...] | None]:  # fmt: skip
+    """The same over what is on offer.
+
+    That the next ones will better it is seen far sooner than what is the cheapest choice until then; and where none
+    will, what was looked at for that may tell the cheapest choice of all.
+    """
+    picked, is_least = (known, True) if known is not None else graph.soon()
+    outlook = _outlook(problem, own, graph, picked, is_least=is_least)
+    while outlook.wanted:
+        weight = _weight(graph, picked, is_least=is_least)
+        while outlook.wanted:
+            extend(problem, own, outlook.wanted)
+            found, graph = posed()
+            outlook = _bettering(problem, own, graph, weight)
+        picked, is_least = graph.soon()
+        if not np.isfinite(outlook.floor):
+            outlook = _outlook(problem, own, graph, picked, is_least=is_least)
+    best = picked if is_least else outlook.least or picked
+    if not is_least and (best is None or not graph.is_cheapest(best, outlook.floor)):
+        best = graph.cheapest()
+    return found, graph, best
 
 
-def _bettering(problem: Problem, own: Repertoire, graph: Graph, weight: float) -> list[str]:
-    """The patches with lanes not made yet that could be part of a choice that weighs less."""
-    if weight <= problem.least.get(own.unit, -np.inf):
-        return []
-    least = {p: _price(problem, p, many[0].variant) if many else np.inf for p, many in own.plain.items()}
-    spare = weight - sum(price for price in least.values() if np.isfinite(price))
+def _weight(graph: Graph, picked: tuple[int, ...] | None, *, is_least: bool) -> float:
+    """What a choice counts; without any, what lanes have to better if it is known that there is none, or if not."""
+    return graph.weight(picked) if picked is not None else -np.inf if is_least else np.inf
+
+
+def _outlook(
+    problem: Problem, own: Repertoire, graph: Graph, picked: tuple[int, ...] | None, *, is_least: bool
+) -> Outlook:
+    """The lanes not made yet that could better a choice; all of them where there is no choice."""
+    if picked is None and is_least:
+        return Outlook(tuple(p for p in own.unit.patches if own.later[p]))
+    return _bettering(problem, own, graph, _weight(graph, picked, is_least=is_least))
+
+
+def _bettering(problem: Problem, own: Repertoire, graph: Graph, weight: float) -> Outlook:
+    """The lanes not made yet that could be part of a choice that weighs less."""
+    least: Choice | None = problem.least.get(own.unit)
+    if least is not None and weight <= least.weight:
+        return Outlook(floor=weight)
+    first = {p: _price(problem, p, many[0].variant) if many else np.inf for p, many in own.plain.items()}
+    spare = weight - sum(price for price in first.values() if np.isfinite(price))
     prices = {p: _price(problem, p, later[0]) for p, later in own.later.items() if later}
-    affordable = {p: price for p, price in prices.items() if price - least[p] < spare}
-    return graph.promising(affordable, weight) if affordable else []
+    affordable = {p: price for p, price in prices.items() if price - first[p] < spare}
+    return graph.promising(affordable, weight) if affordable else Outlook()
 
 
 def _price(problem: Problem, patch: str, variant: Variant) -> float:

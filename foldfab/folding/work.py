@@ -11,6 +11,8 @@ import numpy as np
 
 SWEEPING = 2.5e-3
 """A lane that is swept and held against the others of its unit."""
+LOOKING = 1e-4
+"""A lane that is held against what stands around its unit."""
 SEARCHING = 4e-4
 """A patch for which the cheapest option is looked for."""
 PLAYING = 3e-3

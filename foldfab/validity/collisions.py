@@ -22,6 +22,8 @@ TOUCH = 0.05
 """Bodies may share this much, mm: a layer of a print, and far less than the clearance of a hinge."""
 DEPTH = 7
 """How often an interval is bisected; 3 mm of motion are then 0.02 mm."""
+PASSING = 20
+"""How often the moment is bisected in which parallel sheets change sides."""
 CHUNK = 24
 """Intervals that are looked at together."""
 PARALLEL = 0.9998
@@ -131,7 +133,7 @@ def _within(folding: Folding, tree: Tree, pieces: _Pieces, times: Array) -> Iter
         measured = [separation(own, other) for other in posed]
         for (apart, _), time in zip(measured, (spans.start, middle, spans.end), strict=True):
             yield from _met(folding, pieces, spans, apart, time)
-        passed = _passed(own, posed[0], posed[2])
+        passed = _passed(folding, tree, pieces, spans, posed[0], posed[2])
         yield from _met(folding, pieces, spans, passed, middle)
         deep = np.min([apart for apart, _ in measured], axis=0) < -TOUCH
         again = ~(_is_safe(own, posed, [axis for _, axis in measured]) | (passed < -TOUCH) | deep)
@@ -190,24 +192,51 @@ def _bend(start: Boxes, middle: Boxes, end: Boxes) -> Array:
     return bend
 
 
-def _passed(own: Boxes, before: Boxes, after: Boxes) -> Array:
+def _passed(folding: Folding, tree: Tree, pieces: _Pieces, spans: _Spans, before: Boxes, after: Boxes) -> Array:
     """(n,) minus how much of each other sheets cover that change sides while parallel, mm; 0 where they do not."""
-    thin = np.argmin(own.half, axis=1)
-    count = np.arange(len(thin))
-    normal = own.axes[count, thin]
-    sides = [np.einsum("nj,nj->n", normal, boxes.center - own.center) for boxes in (before, after)]
-    flat = np.abs(np.einsum("nj,nkj->nk", normal, before.axes))[count, np.argmin(before.half, axis=1)] > PARALLEL
-    flat &= np.abs(np.einsum("nj,nkj->nk", normal, after.axes))[count, np.argmin(after.half, axis=1)] > PARALLEL
-    flat &= (own.half.min(1) == 0) & (before.half.min(1) == 0)
-    flat &= (sides[0] * sides[1] < 0) & (np.minimum(np.abs(sides[0]), np.abs(sides[1])) > ON_PLANE)
-    flat &= np.abs(sides[0] - sides[1]) > TOUCH
-    found = np.zeros(len(thin))
-    if flat.any():
-        share = (sides[0] / np.where(flat, sides[0] - sides[1], 1.0))[:, None]
-        place = before.center + share * (after.center - before.center)
-        thick = [np.where(b.half == 0, 1e3, b.half) for b in (own, before)]
-        level = separation(Boxes(own.center, own.axes, thick[0])[flat], Boxes(place, before.axes, thick[1])[flat])[0]
-        found[flat] = np.minimum(level, 0.0)
+    own, found = pieces.boxes[spans.first], np.zeros(len(spans.start))
+    sides = _side(own, before), _side(own, after)
+    change = _is_parallel(own, before) & _is_parallel(own, after) & (sides[0] * sides[1] < 0)
+    change &= (np.minimum(*np.abs(sides)) > ON_PLANE) & (np.abs(sides[0] - sides[1]) > TOUCH)
+    if change.any():
+        own, other = own[change], _in_passing(folding, tree, pieces, spans[change], sides[0][change])
+        # In their plane only: they are as good as in it.
+        thick = [np.where(b.half == 0, 1e3, b.half) for b in (own, other)]
+        level = separation(Boxes(own.center, own.axes, thick[0]), Boxes(other.center, other.axes, thick[1]))[0]
+        found[change] = np.minimum(level, 0.0)
+    return found
+
+
+def _in_passing(folding: Folding, tree: Tree, pieces: _Pieces, spans: _Spans, side: Array) -> Boxes:
+    """Where the second sheets of spans are when they go through the planes of the first ones; `side` (n,) at first.
+
+    That moment is bisected: on the way from one sample to the other sheets move aside as well.
+    """
+    own, start, end = pieces.boxes[spans.first], spans.start, spans.end
+    for _ in range(PASSING):
+        middle = (start + end) / 2
+        moments, at = np.unique(middle, return_inverse=True)
+        other = _relative(pieces, spans, _poses(folding, tree, moments), at)
+        is_before = _side(own, other) * side > 0
+        start, end = np.where(is_before, middle, start), np.where(is_before, end, middle)
+    return other
+
+
+def _side(own: Boxes, other: Boxes) -> Array:
+    """(n,) how far sheets are off the planes of others, mm."""
+    found: Array = np.einsum("nj,nj->n", _normal(own), other.center - own.center)
+    return found
+
+
+def _is_parallel(own: Boxes, other: Boxes) -> Bools:
+    """(n,) which are sheets that lie in almost parallel planes."""
+    is_thin = (own.half.min(1) == 0) & (other.half.min(1) == 0)
+    return np.asarray(is_thin & (np.abs(np.einsum("nj,nj->n", _normal(own), _normal(other))) > PARALLEL))
+
+
+def _normal(boxes: Boxes) -> Array:
+    """(n, 3) the direction in which each is thinnest."""
+    found: Array = boxes.axes[np.arange(len(boxes)), np.argmin(boxes.half, axis=1)]
     return found
 
 

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from foldfab.folding import choose
 from foldfab.folding.choose import Combination, cheaper, cheapest
+from foldfab.folding.work import Work
 from foldfab.geometry.arrays import Array, Bools
 
 Conflicts = dict[tuple[int, int], Bools]
@@ -65,23 +66,55 @@ def test_nor_is_one_where_the_search_is_handed_over(limit: int, widest: int, ins
         assert_cheapest(*instance)
 
 
-@given(instances(), st.sampled_from([0.3, 0.8, INF]))
-@settings(deadline=None, derandomize=True, max_examples=200)
-def test_what_is_cheaper_than_something_is_found_where_there_is_any(instance: Instance, than: float) -> None:
+@pytest.mark.parametrize(("limit", "widest"), [(0, 100), (2, 100), (1500, 100), (1500, 0)])
+@given(instance=instances())
+@settings(deadline=None, derandomize=True, max_examples=60)
+def test_a_brief_search_says_whether_it_was_enough(limit: int, widest: int, instance: Instance) -> None:
     costs, conflicts, forbidden = instance
-    best, found = cheapest(costs, conflicts, forbidden), cheaper(costs, conflicts, forbidden, than)
+    gaps: list[float] = []
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(choose, "LIMIT", limit)
+        patch.setattr(choose, "WIDEST", widest)
+        patch.setattr(choose, "proven", None)
+        found = cheapest(costs, conflicts, forbidden, gaps, is_brief=True)
+    assert found is None or is_allowed(found, costs, conflicts, forbidden)
+    if gaps:
+        assert min(gaps) == INF and (limit < 1500 or not widest)
+    else:
+        best = cheapest(costs, conflicts, forbidden)
+        assert (found is None) == (best is None)
+        assert found is None or best is None or price(found, costs) == pytest.approx(price(best, costs))
+
+
+@pytest.mark.parametrize("branches", [600, 2, 0])
+@given(instance=instances(), than=st.sampled_from([0.3, 0.8, INF]))
+@settings(deadline=None, derandomize=True, max_examples=100)
+def test_what_is_cheaper_than_something_is_found_where_there_is_any(
+    branches: int, instance: Instance, than: float
+) -> None:
+    costs, conflicts, forbidden = instance
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(choose, "FEW_BRANCHES", branches)
+        best, (found, floor) = cheapest(costs, conflicts, forbidden), cheaper(costs, conflicts, forbidden, than)
     if best is None or price(best, costs) >= than - 1e-9:
-        assert found is None
+        assert found is None and floor >= than - 1e-6
     else:
         assert found is not None and is_allowed(found, costs, conflicts, forbidden)
-        assert price(found, costs) == pytest.approx(price(best, costs))
+        assert price(found, costs) == pytest.approx(price(best, costs)) == pytest.approx(floor)
 
 
-def test_nothing_cheaper_is_found_without_branches(monkeypatch: pytest.MonkeyPatch) -> None:
-    costs, conflicts = [np.array([0.0, 1.0])] * 2, {(0, 1): np.array([[True, False], [False, False]])}
-    assert cheaper(costs, conflicts, frozenset(), 2.0) is not None
-    monkeypatch.setattr(choose, "FEW_BRANCHES", 0)
-    assert cheaper(costs, conflicts, frozenset(), 2.0) is None
+@pytest.mark.parametrize("branches", [2, 0])
+@given(instance=instances(), than=st.sampled_from([0.3, 0.8, INF]))
+@settings(deadline=None, derandomize=True, max_examples=100)
+def test_without_work_only_little_is_claimed(branches: int, instance: Instance, than: float) -> None:
+    costs, conflicts, forbidden = instance
+    best = cheapest(costs, conflicts, forbidden)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(choose, "FEW_BRANCHES", branches)
+        patch.setattr(choose, "proven", None)
+        found, floor = cheaper(costs, conflicts, forbidden, than, Work(0.0))
+    assert best is None or floor <= price(best, costs) + 1e-9
+    assert found is None or (is_allowed(found, costs, conflicts, forbidden) and price(found, costs) < than)
 
 
 def test_both_ways_to_search_are_taken(monkeypatch: pytest.MonkeyPatch) -> None:

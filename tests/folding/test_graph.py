@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from foldfab.folding import unit_fold
+from foldfab.folding import choose, unit_fold
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.graph import Graph
+from foldfab.folding.options import Options
 from foldfab.folding.ordering import floors
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import unhindered
@@ -55,13 +56,13 @@ def test_a_choice_is_proven_only_once_no_lane_promises_to_better_it(
     made = problem("deep_box")
     (unit,) = made.units
     own, proofs = repertoire(made, unit), list[int]()
-    usual = Graph.cheapest
+    usual = Graph.soon
 
-    def counted(graph: Graph) -> tuple[int, ...] | None:
+    def counted(graph: Graph) -> tuple[tuple[int, ...] | None, bool]:
         proofs.append(len(own.lanes))
         return usual(graph)
 
-    monkeypatch.setattr(Graph, "cheapest", counted)
+    monkeypatch.setattr(Graph, "soon", counted)
     grown = list[int]()
     monkeypatch.setattr(unit_fold, "extend", lambda *given: (grown.append(1), extend(*given)))
     floors(made)
@@ -70,10 +71,60 @@ def test_a_choice_is_proven_only_once_no_lane_promises_to_better_it(
 
 def test_a_promise_is_taken_where_it_is_cheaper_than_what_is_known(problem: Make) -> None:
     graph = graph_of(problem("corner", slanting=False))
-    assert graph.promising({"back": 10.0, "side": 10.0}, np.inf) == []
-    assert graph.promising({"back": 0.0, "side": 10.0}, np.inf) == ["back"]
-    assert graph.promising({"back": 0.0, "side": 0.0}, np.inf) == ["back", "side"]
-    assert graph.promising({"back": 0.1, "side": 0.1}, 0.2) == []
+    assert graph.promising({"back": 10.0, "side": 10.0}, np.inf).wanted == ()
+    assert graph.promising({"back": 0.0, "side": 10.0}, np.inf).wanted == ("back",)
+    assert graph.promising({"back": 0.0, "side": 0.0}, np.inf).wanted == ("back", "side")
+    assert graph.promising({"back": 0.1, "side": 0.1}, 0.2).wanted == ()
+
+
+@pytest.mark.parametrize("name", ["three_walls", "chair", "corner", "two_ways", "deep_box", "table", "beside"])
+@pytest.mark.parametrize("slanting", [True, False])
+def test_what_is_too_tangled_for_a_few_branches_has_the_same_least_choice(
+    problem: Make, name: str, slanting: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    usual = floors(problem(name, slanting=slanting))
+    monkeypatch.setattr(choose, "LIMIT", 0)
+    monkeypatch.setattr(choose, "_go_together", lambda *_: False)
+    found = floors(problem(name, slanting=slanting))
+    assert {n: c.weight for n, c in found.items()} == pytest.approx({n: c.weight for n, c in usual.items()}, abs=1e-5)
+
+
+@pytest.mark.parametrize("name", ["deep_box", "three_walls", "chair"])
+def test_where_nothing_promises_more_the_least_choice_is_known_already(
+    problem: Make, name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The engine is asked for promises alone, and not once more for all options."""
+    monkeypatch.setattr(choose, "LIMIT", 0)
+    monkeypatch.setattr(choose, "_go_together", lambda *_: False)
+    monkeypatch.setattr(Graph, "cheapest", lambda _: pytest.fail("it was asked for all options"))
+    assert all(np.isfinite(c.weight) for c in floors(problem(name, slanting=False)).values())
+
+
+def _is_split(options: Options) -> list[bool]:
+    """Which options have hinges inserted."""
+    return [(v := options[i].variant) is not None and v.hinges > 0 for i in range(len(options.price))]
+
+
+def test_a_choice_is_the_cheapest_only_if_nothing_that_drags_counts_less(problem: Make) -> None:
+    for slanting, is_least in ((True, False), (False, True)):
+        made = problem("box_with_table", slanting=slanting)
+        own = repertoire(made, made.unit_of["left"])
+        extend(made, own, [p for p in own.unit.patches if not any(x.variant.hinges for x in own.plain[p])])
+        graph = Graph(made, own, unhindered(made, own), np.zeros(3))
+        straight = tuple(int(np.where(_is_split(o), o.weight, np.inf).argmin()) for o in graph.options)
+        weight = graph.weight(straight)
+        assert 0 < weight < 1 and graph.is_cheapest(straight, weight) is is_least
+        assert not graph.is_cheapest(straight, weight - 0.01)
+
+
+def test_what_was_left_out_beside_promises_is_asked_of_the_choice_itself(problem: Make) -> None:
+    graph = graph_of(problem("three_walls", slanting=False))
+    dear = dict.fromkeys(graph.patches, 10.0)
+    found = graph.promising(dear, np.inf)
+    assert found.least is not None and not found.wanted and found.floor == pytest.approx(graph.weight(found.least))
+    gone = tuple(len(o.price) - 1 for o in graph.options)
+    graph.forbidden.add(tuple((g, (i, gone[g])) for g, i in enumerate(found.least)))
+    assert graph.promising(dear, np.inf).least is None
 
 
 @pytest.mark.parametrize("patches", [("back",), ("back", "side")])
@@ -83,7 +134,7 @@ def test_a_promise_takes_over_no_conflicts_of_the_deletion_whose_place_it_takes(
     graph = graph_of(problem("corner", slanting=False))
     gone = tuple(len(o.price) - 1 for o in graph.options)
     graph.learn(gone, Clash((patches,), "the furniture would fall apart", cuts=True))
-    assert graph.promising({"back": 0.0, "side": 0.0}, np.inf) == ["back", "side"]
+    assert graph.promising({"back": 0.0, "side": 0.0}, np.inf).wanted == ("back", "side")
 
 
 def test_beside_a_promise_nothing_is_dragged_along(problem: Make) -> None:
@@ -92,8 +143,8 @@ def test_beside_a_promise_nothing_is_dragged_along(problem: Make) -> None:
     own = repertoire(made, made.unit_of["left"])
     graph = Graph(made, own, unhindered(made, own), np.zeros(3))
     assert {x.variant.mechanism for x in own.lanes} == {"slanted"}
-    assert graph.promising({"left": 0.0}, 10.0) == []
-    assert graph.promising({"left": 0.0, "right": 0.0}, 10.0) == ["left", "right"]
+    assert graph.promising({"left": 0.0}, 10.0).wanted == ()
+    assert graph.promising({"left": 0.0, "right": 0.0}, 10.0).wanted == ("left", "right")
 
 
 def test_what_was_learned_of_lanes_that_are_not_there_any_more_is_left_aside(problem: Make) -> None:

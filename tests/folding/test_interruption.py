@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from foldfab.folding import interruption, unit_fold
+from foldfab.folding import choose, interruption, unit_fold
 from foldfab.folding.basic import WHOLE
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.graph import Graph
@@ -20,6 +20,7 @@ from foldfab.folding.prospects import unhindered
 from foldfab.folding.repertoire import interrupt, stretches
 from foldfab.folding.scene import open_scene
 from foldfab.folding.solve import _ordered
+from foldfab.folding.work import Work
 from foldfab.recipe.model import Part
 from foldfab.validity.verify import violations
 
@@ -43,7 +44,7 @@ def test_an_interrupted_hinge_is_the_cheapest_answer(
 def test_without_it_a_part_is_shrunk(
     solution: Callable[..., FoldSolution], butting: tuple[Part, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(unit_fold, "interrupted", lambda *_: False)
+    monkeypatch.setattr(unit_fold, "interrupted", lambda *_: (False, np.inf))
     made = solution(butting, slanting=False)
     assert made.cost > HINGE + 1e-3 and not any(c.breaks for c in made.chains)
 
@@ -85,12 +86,55 @@ def test_lanes_are_made_again_only_where_hinges_meet_something(problem: Make, bu
 def test_lanes_that_did_not_pay_are_no_options(
     problem: Make, butting: tuple[Part, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(interruption, "ROUNDS", 1)
+    monkeypatch.setattr(interruption, "_are_hindered", lambda *_: True)
     made = problem(butting, slanting=False)
     floors(made)
     own = repertoire(made, made.units[0])
     assert any(x.variant.hinged != WHOLE for x in own.lanes) and not own.interrupted
     assert all(x.variant.hinged == WHOLE for many in own.plain.values() for x in many)
+
+
+def test_a_choice_that_no_knuckles_suit_is_not_tried_again(
+    problem: Make, butting: tuple[Part, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Until none is cheaper: then there is nothing that interrupted hinges could better."""
+    asked: list[float] = []
+    usual = Graph.cheaper
+
+    def watched(graph: Graph, than: float, work: Work) -> tuple[tuple[int, ...] | None, float]:
+        best, floor = usual(graph, than, work)
+        asked.append(graph.weight(best) if best is not None else np.inf)
+        return best, floor
+
+    monkeypatch.setattr(Graph, "cheaper", watched)
+    monkeypatch.setattr(interruption, "_agreeing", lambda *_: {})
+    monkeypatch.setattr(interruption, "ROUNDS", 200)
+    made = problem(butting, slanting=False)
+    ((choice),) = floors(made).values()
+    assert asked == sorted(asked) and len(asked) > 1 and asked[-1] == np.inf and choice.spare == 0
+
+
+def test_what_was_not_looked_at_to_its_end_is_not_proven(
+    problem: Make, butting: tuple[Part, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(interruption, "_agreeing", lambda *_: {})
+    monkeypatch.setattr(interruption, "ROUNDS", 1)
+    for ordering in ("greedy", "optimal"):
+        made = problem(butting, slanting=False, ordering=ordering)
+        ((choice),) = floors(made).values()
+        assert choice.spare > interruption.WORTH
+        found, bound = _ordered(made, open_scene(made), floors(made))
+        assert bound == pytest.approx(choice.weight) and bound + choice.spare == pytest.approx(weight(found))
+
+
+def test_without_any_work_it_is_as_if_any_hinge_might_be_interrupted(
+    problem: Make, butting: tuple[Part, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(choose, "FEW_BRANCHES", 0)
+    monkeypatch.setattr(interruption, "ENOUGH", 0.0)
+    made = problem(butting, slanting=False)
+    (choice,) = floors(made).values()
+    assert choice.weight == pytest.approx(HINGE, abs=1e-5) and choice.spare > interruption.WORTH
 
 
 def test_each_place_gets_the_least_stretch_that_holds(problem: Make, butting: tuple[Part, ...]) -> None:

@@ -48,6 +48,15 @@ def test_options_that_exclude_each_other_are_not_taken_together() -> None:
     assert found.chosen == {"a": 0, "b": 1} and found.bound == pytest.approx(0.2, abs=FINE)
 
 
+@pytest.mark.parametrize("is_conflict", [True, False])
+def test_only_programs_with_conflicts_are_presolved(is_conflict: bool) -> None:
+    """In others nothing is to be found but in the cuts, which are few at a time."""
+    table = {("a", "b"): np.array([[is_conflict, False], [False, False]])}
+    made = master({"u": ("a",), "v": ("b",)}, {"a": (0.0, 0.3), "b": (0.0, 0.2)}, table)
+    assert solved(made).bound == pytest.approx(0.2 if is_conflict else 0.0, abs=FINE)
+    assert made.solver.parameters.cp_model_presolve is is_conflict
+
+
 def test_only_what_is_worth_it_may_be_taken() -> None:
     made = Master({"u": ("a",)}, {"a": options("a", 0.0, 0.1)}, {}, {"a": [1]})
     assert solved(made).chosen == {"a": 1}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from foldfab.folding.ordering import floors, greedy
 from foldfab.folding.problem import Problem
 from foldfab.folding.scene import open_scene
 from foldfab.folding.solve import _ordered, posed, solve
+from foldfab.folding.unit_fold import UnitFold
 from foldfab.recipe.model import Part, Pattern
 from foldfab.scaffold.model import Scaffold
 from foldfab.validity.verify import violations
@@ -71,6 +73,25 @@ def test_what_a_unit_tried_in_vain_is_learned_once_and_changes_no_optimum(
     made = problem(three_in_a_row, ordering="optimal", time_limit=30.0)
     other, other_bound = _ordered(made, open_scene(made), floors(made))
     assert (weight(found), bound) == pytest.approx((weight(other), other_bound), abs=NO_MORE)
+
+
+def test_a_proposal_is_repaired_only_as_long_as_it_can_better_what_is_known(
+    problem: Make, three_in_a_row: tuple[Part, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    usual, repaired = optimum.played, list[bool]()
+
+    def watched(group: Group, *given: Any) -> tuple[tuple[UnitFold, ...] | None, bool]:
+        known = group.known
+        folds, holds = usual(group, *given)
+        if not holds:
+            repaired.append(folds is not None)
+            assert folds is None or sum(fold.weight for fold in folds) < known
+        return folds, holds
+
+    monkeypatch.setattr(optimum, "played", watched)
+    made = problem(three_in_a_row, ordering="optimal", time_limit=30.0)
+    found, bound = _ordered(made, open_scene(made), floors(made))
+    assert repaired and bound == pytest.approx(weight(found), abs=NO_MORE)
 
 
 def test_a_little_work_gives_a_fold_with_its_bound(solution: Callable[..., FoldSolution]) -> None:

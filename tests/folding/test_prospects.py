@@ -11,11 +11,12 @@ from foldfab.folding.congruent import repertoire
 from foldfab.folding.lanes import Lane
 from foldfab.folding.ordering import after
 from foldfab.folding.problem import Problem
-from foldfab.folding.prospects import THE_BOX, Prospects, prospects, unhindered
+from foldfab.folding.prospects import THE_BOX, Prospects, blocked_pieces, prospects, unhindered
 from foldfab.folding.repertoire import TOUCH, Repertoire, far_shift
 from foldfab.folding.scene import Scene, open_scene
 from foldfab.folding.surroundings import Surroundings, look
 from foldfab.folding.unit_fold import UnitFold, fold_unit
+from foldfab.folding.work import LOOKING
 from foldfab.geometry.boxes import Boxes, grown, moved, overlaps
 from foldfab.recipe.model import Part
 
@@ -51,6 +52,15 @@ def after_folding(made: Problem, patch: str) -> Scene:
     fold = fold_unit(made, scene, made.unit_of[patch])
     assert isinstance(fold, UnitFold)
     return after(made, scene, fold)
+
+
+def test_a_lane_is_held_against_its_surroundings_once_and_counted_for_it(problem: Make) -> None:
+    made = problem("box_with_table")
+    own, around = seen(made, open_scene(made), "leg-left")
+    lanes, before = list(own.plain["leg-left"]), made.work.spent
+    for _ in range(2):
+        blocked_pieces(made, own, around, lanes)
+        assert made.work.spent - before == pytest.approx(LOOKING * len(lanes))
 
 
 @pytest.fixture(scope="session")

@@ -16,6 +16,7 @@ from foldfab.folding.problem import Problem
 from foldfab.folding.scene import open_scene, shown
 from foldfab.folding.sheets import crossings
 from foldfab.folding.surroundings import look
+from foldfab.geometry.boxes import moved
 from foldfab.recipe.model import Part
 from foldfab.validity.verify import violations
 
@@ -105,6 +106,37 @@ def test_a_leg_swings_through_what_stands_on_its_base_alone(
         return sheets.swings_into(made.scaffold, inward, [problem(parts).sites["right"]])
 
     assert through(69.0) == ("right",) and through(71.0) == ()
+
+
+@pytest.mark.parametrize(
+    ("z", "x", "through"), [(71.4, -20, True), (71.4, 25, False), (72, -20, False), (-1, -20, False)]
+)
+def test_a_leg_swings_through_another_base(
+    z: float, x: float, through: bool, wall_at: Any, board_at: Any, solution: Solutions
+) -> None:
+    """70 mm down from x = -34.5 at z = 72, and past the plane of a base 0.6 mm lower in its last degree alone."""
+    made = solution((board_at("top", 72, 200), wall_at("left", -34.5, 0, 72)))
+    chain, base = made.chain("left"), made.scaffold.bases[-1]
+    inward = replace(chain, turn=abs(chain.turn) * np.sign(chain.across[0]))
+    beside = replace(base.outlines[0], center=np.array([x + 50.0, 0.0]), half=np.array([40.0, 40.0]))
+    other = replace(base, name="ledge", bottom=float(z), outlines=(beside,))
+    found = sheets.swings_into(made.scaffold, inward, [], [other])
+    assert found == (("ledge",) if through else ())
+
+
+def test_what_has_come_nearer_is_left_to_the_rehearsal(
+    wall_at: Any, board_at: Any, problem: Callable[..., Problem], solution: Solutions
+) -> None:
+    """A T is held against what stands to its base as in the open furniture, whatever carries it."""
+    parts = (board_at("top", 72, 200), wall_at("left", -34.5, 0, 72), wall_at("right", 34.5, 0, 72))
+    posed = problem(parts)
+    unit = posed.unit_of["left"]
+    around = look(posed, open_scene(posed), repertoire(posed, unit))
+    (anchor,) = unit.bases
+    assert {s.owner for s in realise._standing_to(around, anchor)} == {anchor, "right"}
+    away = np.where((around.owner == [s.owner for s in around.solids].index("right"))[:, None], [0.0, 0.0, -1.0], 0.0)
+    lower = replace(around, boxes=moved(around.boxes, away))
+    assert {s.owner for s in realise._standing_to(lower, anchor)} == {anchor}
 
 
 @pytest.mark.parametrize(("left", "is_free"), [((20.0, 30.0), True), ((0.0, 30.0), False)])

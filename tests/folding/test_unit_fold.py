@@ -264,8 +264,8 @@ def test_the_cheapest_choice_is_not_looked_for_again_where_nothing_is_in_its_way
     made = problem("three_walls")
     unit, asked = made.unit_of["back"], []
     least = least_choice(made, repertoire(made, unit))
-    search = Graph.cheapest
-    monkeypatch.setattr(Graph, "cheapest", lambda graph: (asked.append(graph), search(graph))[1])
+    search = Graph.soon
+    monkeypatch.setattr(Graph, "soon", lambda graph: (asked.append(graph), search(graph))[1])
     assert folds(made, "back").weight == pytest.approx(least.weight)
     assert not asked
     # It is where it has been found out that the choice does not hold.

@@ -70,6 +70,21 @@ def test_sheets_that_pass_through_each_other_while_parallel(
     assert met(clear) == []
 
 
+@pytest.mark.parametrize("over", [-0.01, 0.2])
+def test_what_sheets_cover_of_each_other_is_told_at_the_moment_of_passing(
+    over: float, table: Linkage, sheet: Sheets, folding: Foldings, lump: Lumps
+) -> None:
+    """The top comes down on an arc: halfway between two samples its edge is a quarter of a millimetre further on."""
+    edge = 40 * np.sqrt(1 - (21.7 / 40) ** 2)
+    ground = lump(table.bodies[0], sheet("shelf", (3, 21.7), (edge + over, 21.7), y=30.0))
+    top = lump(table.bodies[1], sheet("top", (0, 40), (60, 40), y=30.0))
+    whole = folding(
+        [ground, top, *table.bodies[2:]], table.hinges, lambda t: np.repeat(t[:, None] * np.pi / 2, 4, 1), 8
+    )
+    found = [(m.first, m.second, round(m.depth, 3)) for m in met(whole)]
+    assert found == ([("ground", "top", over)] if over > 0 else [])
+
+
 def test_what_meets_at_the_start_and_does_not_move(sheet: Sheets, hinge: Hinges, folding: Foldings) -> None:
     ground, leaf = sheet("ground", (0, 0), (60, 0)), sheet("leaf", (10, -5), (10, 30))
     found = met(folding([ground, leaf], [hinge("ground", "leaf", 10, 0)], swing(0.0)))

@@ -54,11 +54,11 @@ def _folded(problem: Problem, scene: Scene, own: Repertoire, around: Surrounding
     """The fold of a unit where it costs no more than at least, or None where it does here."""
     chosen = _with_room(problem, own, around, floor)
     if chosen is not None:
-        return _played(problem, scene, own, around, chosen, floor.weight)
-    if round(estimated(problem, scene, own, around) - floor.weight, DIGITS) > 0:
+        return _played(problem, scene, own, around, chosen, floor)
+    if round(estimated(problem, scene, own, around) - floor.counted, DIGITS) > 0:
         return None
     found = fold_seen(problem, scene, own, around, is_final=True)
-    is_least = isinstance(found, UnitFold) and round(found.weight - floor.weight, DIGITS) <= 0
+    is_least = isinstance(found, UnitFold) and round(found.weight - floor.counted, DIGITS) <= 0
     return found if is_least and isinstance(found, UnitFold) else None
 
 
@@ -84,7 +84,7 @@ def _with_room(problem: Problem, own: Repertoire, around: Surroundings, floor: C
 
 
 def _played(
-    problem: Problem, scene: Scene, own: Repertoire, around: Surroundings, chosen: Mapping[str, Place], weight: float
+    problem: Problem, scene: Scene, own: Repertoire, around: Surroundings, chosen: Mapping[str, Place], floor: Choice
 ) -> UnitFold | None:
     options = {p: _option(problem, p, x.variant, window) for p, (x, window) in chosen.items()}
     result = realised(problem, scene, own.unit, around, options)
@@ -92,7 +92,7 @@ def _played(
         return None
     cost = sum(o.cost for o in options.values())
     reasons = reasons_of(problem, own, prospects(problem, own, around, in_place=False), options) if cost else {}
-    return UnitFold(own.unit, options, reasons, *result, around.cluster, cost, weight, around.key)
+    return UnitFold(own.unit, options, reasons, *result, around.cluster, cost, floor.counted, around.key, floor.gap)
 
 
 def _option(problem: Problem, patch: str, variant: Variant, window: tuple[int, int]) -> Option:

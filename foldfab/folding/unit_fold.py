@@ -71,6 +71,13 @@ class Choice:
     """By patch that is kept, its lane and its window in N_s-ths."""
     spare: float = 0.0
     """By how much hinges that are interrupted might better it, where the work did not suffice to tell."""
+    gap: float = 0.0
+    """By how much anything else might."""
+
+    @property
+    def counted(self) -> float:
+        """What it counts as it is."""
+        return self.weight + self.spare + self.gap
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,8 +178,9 @@ def _least_choice(problem: Problem, own: Repertoire) -> Choice:
     if not graph.gaps:
         own.least.update(places)
     # Where the work did not suffice to prove the choice, what it may be too dear by is no part of what must be paid.
-    weight = graph.weight(picked) - sum(graph.gaps)
-    return Choice(min(weight, floor), places, max(weight - floor, 0.0))
+    gap = float(sum(graph.gaps))
+    weight = graph.weight(picked) - gap
+    return Choice(min(weight, floor), places, max(weight - floor, 0.0), gap)
 
 
 def _chains(problem: Problem, graph: Graph, picked: tuple[int, ...]) -> list[Chain]:

@@ -78,6 +78,7 @@ def test_what_a_unit_tried_in_vain_is_learned_once_and_changes_no_optimum(
 def test_a_proposal_is_repaired_only_as_long_as_it_can_better_what_is_known(
     problem: Make, three_in_a_row: tuple[Part, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr("foldfab.folding.solve.bottom_up", lambda *_: None)
     usual, repaired = optimum.played, list[bool]()
 
     def watched(group: Group, *given: Any) -> tuple[tuple[UnitFold, ...] | None, bool]:

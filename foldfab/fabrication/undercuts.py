@@ -66,6 +66,7 @@ def undercuts(chain: Chain, thickness: Thickness, i: int, up: Array) -> Undercut
             found.knuckles.extend(_tapers(hinge, thickness))
     elif abs(up[1]) < LEVEL:
         rise = np.array([up[0], up[2]]) / np.hypot(up[0], up[2])
+        found.slab.extend(_ends(chain, thickness, i, rise))
         for way in (-rise, rise):
             for hinge in _hinges(chain, thickness, i):
                 if way @ hinge.carrier > FACING:
@@ -121,10 +122,7 @@ def _roofs(hinge: _Hinge, chain: Chain, thickness: Thickness, i: int, way: Array
     """Roofs of 45° over the room around the knuckles of the panel below, as high as what is left of this one lets."""
     # Flanks that begin inside the room leave no steps on its facets.
     reach = thickness.knuckle_room - KEPT
-    last, beyond = len(chain.lengths) - 1, float(chain.lengths[i])
-    if i < last or chain.far is not None:
-        beyond -= thickness.knuckle_room if i < last else thickness.foot_room
-    ends = np.array([abs(hinge.x) + thickness.panel / 2, beyond]) / np.maximum(np.abs(way), FACING)
+    ends = np.array([abs(hinge.x) + thickness.panel / 2, _beyond(chain, thickness, i, 1.0)]) / np.maximum(np.abs(way), FACING)
     low, top = reach * np.sqrt(0.5), min(reach * np.sqrt(2.0), float(ends.min()) - WEB)
     flat = reach * np.sqrt(2.0) - top
     if top <= reach + KEPT:
@@ -136,6 +134,39 @@ def _roofs(hinge: _Hinge, chain: Chain, thickness: Thickness, i: int, way: Array
     span = (float(chain.span[0]), float(chain.span[1]))
     for a, b in stretches(hinge.marks.carrier, thickness.gap, span):
         yield prism([(float(x), float(z)) for x, z in outline], a, b)
+
+
+def _ends(chain: Chain, thickness: Thickness, i: int, rise: Array) -> Iterator[Shape]:
+    """What lies below a plane of 45° at that end of a panel that looks down on another one, beside the hinge there.
+
+    The plane begins at the lower side of the end: that of the hinge's room, where it is level.
+    """
+    half, sign = thickness.panel / 2, float(np.sign(rise[1]))
+    j = i if sign > 0 else i + 1
+    slope = float(np.tan(np.pi / 4 - np.arcsin(min(abs(rise[0]), 1.0))))
+    depth = min(half * slope, _beyond(chain, thickness, i, sign) - thickness.gap / 2 - WEB)
+    if not 0 < j < len(chain.lengths) or depth < CLEAR:
+        return
+    back, steep = -float(np.sign(chain.offsets[j])), depth / half
+    low, high = -back * thickness.gap / 2, back * half
+    low, high = (low, high) if back * rise[0] > -LEVEL else (high, low)
+    way = float(np.sign(high - low))
+    # From a little inside on: a plane through an edge leaves slivers.
+    start, over = low + way * CLEAR, high + way * CLEAR
+    corners = [(start - way * CLEAR, -CLEAR), (over, -CLEAR), (over, abs(over - start))]
+    end = 0.0 if sign > 0 else float(chain.lengths[i])
+    outline = [(float(x), end + sign * (thickness.gap / 2 + steep * z)) for x, z in corners]
+    yield prism(outline, float(chain.span[0]) - CLEAR, float(chain.span[1]) + CLEAR)
+
+
+def _beyond(chain: Chain, thickness: Thickness, i: int, sign: float) -> float:
+    """How far it is along a panel from the hinge at its start (or its end, where `sign` < 0) to what the other takes."""
+    last, length = len(chain.lengths) - 1, float(chain.lengths[i])
+    other = i + 1 if sign > 0 else i
+    if other in (0, last + 1):
+        has_base = other == 0 or chain.far is not None
+        return length - thickness.foot_room * has_base
+    return length - thickness.knuckle_room
 
 
 def _tapers(hinge: _Hinge, thickness: Thickness) -> Iterator[Shape]:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from foldfab.fabrication.hinges import Knuckles, knuckles, stretches
-from foldfab.fabrication.shapes import Shape, cone, cut, prism, rod
+from foldfab.fabrication.shapes import Shape, box, cone, cut, prism
 from foldfab.fabrication.walls import LINE
 from foldfab.folding.model import Chain, Thickness
 from foldfab.geometry.arrays import Array
@@ -45,7 +45,11 @@ class _Hinge:
     carrier: Array
     """(2,) x and z of the way to the body that carries it."""
     limit: float
-    """How far along z, away from that body, the knuckles alone may be cut, mm from the axis."""
+    """How far along z, away from that body, knuckles may be cut, mm from the axis."""
+
+    def around(self, outline: list[Array]) -> list[tuple[float, float]]:
+        """Points (2,) around the axis, in the panel's frame."""
+        return [(float(self.x + x), float(self.z + z)) for x, z in outline]
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,16 +100,20 @@ def _depth(thickness: Thickness) -> float:
 def _point(hinge: _Hinge, thickness: Thickness, way: Array) -> Iterator[Shape]:
     """What lies outside two planes of 45° that meet in an edge on the side of `way` (2,)."""
     half, edge = thickness.panel / 2, _depth(thickness)
-    side, reach = np.array([-way[1], way[0]]), half + CLEAR
+    reach = half + CLEAR
     # The planes end where they reach the faces of the panel.
     flank = [(half, edge - half), (0.0, edge), (0.0, reach), (reach, reach), (reach, edge - half)]
     for sign in (-1.0, 1.0):
-        outline = [sign * across * side + along * way for across, along in flank]
+        outline = _turned([(sign * across, along) for across, along in flank], way)
         outline = _clipped(outline, -np.sign(hinge.carrier) * [0.0, 1.0], hinge.limit)
-        middle = np.array([hinge.x, hinge.z])
-        corners = [(float(x), float(z)) for x, z in (middle + point for point in outline)]
-        for a, b in hinge.marks.follower if corners else ():
-            yield prism(corners, a - thickness.gap / 2, b + thickness.gap / 2)
+        for a, b in hinge.marks.follower if outline else ():
+            yield prism(hinge.around(outline), a - thickness.gap / 2, b + thickness.gap / 2)
+
+
+def _turned(corners: list[tuple[float, float]], way: Array) -> list[Array]:
+    """(2,) x and z of points that are told by how far they are across a way (2,), and along it."""
+    side = np.array([-way[1], way[0]])
+    return [across * side + along * way for across, along in corners]
 
 
 def _clipped(outline: list[Array], way: Array, limit: float) -> list[Array]:
@@ -122,18 +130,17 @@ def _roofs(hinge: _Hinge, chain: Chain, thickness: Thickness, i: int, way: Array
     """Roofs of 45° over the room around the knuckles of the panel below, as high as what is left of this one lets."""
     # Flanks that begin inside the room leave no steps on its facets.
     reach = thickness.knuckle_room - KEPT
-    ends = np.array([abs(hinge.x) + thickness.panel / 2, _beyond(chain, thickness, i, 1.0)]) / np.maximum(np.abs(way), FACING)
-    low, top = reach * np.sqrt(0.5), min(reach * np.sqrt(2.0), float(ends.min()) - WEB)
+    across = abs(hinge.x) + thickness.panel / 2
+    most = np.array([across, _beyond(chain, thickness, i, 1.0)]) / np.maximum(np.abs(way), FACING)
+    low, top = reach * np.sqrt(0.5), min(reach * np.sqrt(2.0), float(most.min()) - WEB)
     flat = reach * np.sqrt(2.0) - top
     if top <= reach + KEPT:
         return
     corners = [(-low, low), (-flat, top), (flat, top), (low, low), (0.0, 0.0)]
     corners = corners if flat > KEPT else [(-low, low), (0.0, top), (low, low), (0.0, 0.0)]
-    side, middle = np.array([-way[1], way[0]]), np.array([hinge.x, hinge.z])
-    outline = [middle + across * side + along * way for across, along in corners]
     span = (float(chain.span[0]), float(chain.span[1]))
     for a, b in stretches(hinge.marks.carrier, thickness.gap, span):
-        yield prism([(float(x), float(z)) for x, z in outline], a, b)
+        yield prism(hinge.around(_turned(corners, way)), a, b)
 
 
 def _ends(chain: Chain, thickness: Thickness, i: int, rise: Array) -> Iterator[Shape]:
@@ -178,4 +185,5 @@ def _tapers(hinge: _Hinge, thickness: Thickness) -> Iterator[Shape]:
             low, high = sorted((end - way * thickness.gap / 2, end + way * deep))
             tip = end - way * (size + KEPT)
             kept = cone(2 * room, tip + way * 2 * room, tip, hinge.x, hinge.z)
-            yield cut(rod(room, low, high, hinge.x, hinge.z, is_hole=True), [kept])
+            block = box((hinge.x - room, low, hinge.z - room), (hinge.x + room, high, hinge.z + room))
+            yield cut(block, [kept])

@@ -53,7 +53,5 @@ def _panel(chain: Chain, thickness: Thickness, i: int, up: Array | None) -> Shap
         holes += room(marks.follower, thickness.knuckle_room, thickness, x, length, (low, high))
         more, bores = pinned.carrier(marks, thickness, x, length)
         extra, sockets = extra + more + webs(marks.carrier, thickness, x, length, -1.0), sockets + bores
-    if up is not None:
-        below = undercuts(chain, thickness, i, up)
-        holes, sockets = holes + below.slab, sockets + below.knuckles
+    sockets += undercuts(chain, thickness, i, up) if up is not None else []
     return cut(union([cut(union(solid), holes), *extra]), sockets)

@@ -145,6 +145,19 @@ class Trial:
             self._make(name, solid)
         return problem
 
+    def trim(self, name: str, holes: Sequence[Shape]) -> bool:
+        """Takes holes from a body; not where it would be less sound, or a hinge would stop no more as it did."""
+        cutters = [printed(hole) for hole in holes]
+        solid = solids.tidied(solids.cut(self.made[name], cutters))
+        if flaw(solid) or self.judge.is_thinner(name, solid, self.made[name], beside(cutters)):
+            return False
+        if self._unstopped(name, solid):
+            return False
+        for hole in holes:
+            self._change(name, Change(False, hole))
+        self._make(name, solid)
+        return True
+
     def latched(self, fitted: Fitted) -> Latched | None:
         """What a pin makes of the base of a stop, made or not; None where it has no room or does not hold."""
         stop = fitted.stop

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from foldfab.fabrication import solids
+from foldfab.fabrication import solids, stopping
 from foldfab.fabrication.analytic import analytic
 from foldfab.fabrication.coupon import coupon
 from foldfab.fabrication.hinges import knuckles
@@ -18,9 +18,11 @@ from foldfab.fabrication.panels import panels
 from foldfab.fabrication.plates import plate
 from foldfab.fabrication.posture import open_turn
 from foldfab.fabrication.printed import printed
-from foldfab.fabrication.shapes import Shape
+from foldfab.fabrication.shapes import Shape, box, cut
 from foldfab.fabrication.solids import Outline, Solid
-from foldfab.fabrication.undercuts import KEPT, WEB
+from foldfab.fabrication.stopping import stopped
+from foldfab.fabrication.trial import Trial
+from foldfab.fabrication.undercuts import KEPT, WEB, bevels, roofs
 from foldfab.fabrication.walls import thin_sides
 from foldfab.folding.mechanism import joints, tilts
 from foldfab.folding.model import Chain, Thickness
@@ -40,12 +42,18 @@ Row = Callable[..., list[Shape]]
 
 @pytest.fixture
 def row(make_chain: Callable[..., Chain], make_base: Callable[..., BasePatch]) -> Row:
-    """A base and the two panels that stand on it, with their hinges along y; `up` (3,) as they are printed."""
+    """A base and the two panels that stand on it, with their hinges along y, as they are; or with all that may be cut.
+
+    `up` (3,) points up in print.
+    """
 
     def made(thickness: Thickness, up: Array | None, length: float = 30.0) -> list[Shape]:
         chain = make_chain(thickness, lengths=(length, length), width=36.0)
         base, _ = plate(make_base((0, 0, 30, 30)), (chain,), thickness)
-        return [base, *panels(chain, thickness, up)]
+        found = panels(chain, thickness, up)
+        trims = [] if up is None else [*roofs(chain, thickness, 1, up, 1.0), *bevels(chain, thickness, 1, up, ())]
+        cut_from = [[hole for name, hole in trims if name == panel] for panel in chain.panels]
+        return [base, *(cut(shape, holes) for shape, holes in zip(found, cut_from, strict=True))]
 
     return made
 
@@ -111,14 +119,29 @@ def test_knuckles_are_pointed_towards_what_carries_them_alone(row: Row) -> None:
     assert solids.bounds(level)[0][2] == pytest.approx(axis - half, abs=0.01)
 
 
-def test_a_roof_leaves_a_wall_or_is_none(row: Row) -> None:
+@pytest.mark.parametrize("up", [ASIDE, -ASIDE])
+def test_a_roof_leaves_a_wall_across_a_level_panel_or_is_none(up: Array, make_chain: Callable[..., Chain]) -> None:
+    for thickness, least in ((Thickness(2.0, 0.3), 0.0), (Thickness(3.0, 0.3), WEB), (Thickness(4.0, 0.3), WEB)):
+        chain = make_chain(thickness, lengths=(30.0, 30.0), width=36.0)
+        holes = [printed(hole) for _, hole in roofs(chain, thickness, 1, up, 1.0)]
+        assert bool(holes) == (least > 0)
+        for hole in holes:
+            reach = solids.mesh(hole)[0][:, 0] * np.sign(chain.offsets[1])
+            assert reach.min() >= least - thickness.panel / 2 - 1e-6
+            assert np.isclose(reach.min(), least - thickness.panel / 2, atol=0.1)
+
+
+@pytest.mark.parametrize("short", [6.2, 7.0, 30.0])
+def test_a_roof_leaves_a_wall_along_a_short_panel(short: float, make_chain: Callable[..., Chain]) -> None:
     thickness = THICKNESSES[3]
-    bottom = thickness.panel / 2 + thickness.axis_height
-    for length in (thickness.least_length(is_first=True, is_last=False, ends_free=True), 30.0):
-        made, plain = (printed(row(thickness, way, length)[2]) for way in (UP, None))
-        taken = solids.cut(plain, [made])
-        assert solids.bounds(taken)[1][2] <= bottom + 2 * length - WEB + 1e-6
-        assert taken.volume() > 1.0
+    chain = make_chain(thickness, lengths=(30.0, short, 30.0), width=36.0)
+    bottom = float(chain.root[2]) + 30.0
+    tops = [solids.bounds(printed(hole))[1][2] - bottom for _, hole in roofs(chain, thickness, 1, UP, 1.0)]
+    wanted = np.sqrt(2.0) * (thickness.knuckle_room - KEPT)
+    assert tops == pytest.approx([min(wanted, short - thickness.knuckle_room - WEB)] * len(tops))
+    assert len(tops) == 2
+    low = [solids.bounds(printed(hole))[1][2] - bottom for _, hole in roofs(chain, thickness, 1, UP, 0.5)]
+    assert all(a < b or np.isclose(b, short - thickness.knuckle_room - WEB) for a, b in zip(low, tops, strict=True))
 
 
 @pytest.mark.parametrize("up", [(0.0, 0.5, 0.8), (0.6, 0.8, 0.0)])
@@ -139,6 +162,67 @@ def test_only_what_is_printed_open_has_it(posture: Posture, name: str, assembled
         # Stops that were added may fill a little of it.
         assert left < (0.2 * spared.volume() if posture == "open" else 1e-6)
         assert posture != "open" or spared.volume() > 10.0
+
+
+@pytest.mark.parametrize("lean", [0.0, 20.0, -20.0, 40.0])
+@pytest.mark.parametrize("up", [UP, -UP], ids=["upright", "upside down"])
+def test_the_end_that_looks_down_is_bevelled_beside_stops(
+    lean: float, up: Array, make_chain: Callable[..., Chain]
+) -> None:
+    thickness, taken = THICKNESSES[3], ((-4.0, 3.0),)
+    chain = replace(make_chain(thickness, lengths=(30.0, 30.0), width=36.0), lean=np.radians(lean))
+    holes = list(bevels(chain, thickness, 1, up, taken))
+    assert {name for name, _ in holes} == {chain.panels[1 if up[2] > 0 else 0]}
+    for _, hole in holes:
+        vertices, faces = solids.mesh(printed(hole))
+        corners = vertices[faces]
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        slopes = normals @ up / np.linalg.norm(normals, axis=1)
+        # What it leaves looks down by 45°, but where the panel's own faces do already.
+        assert np.isclose(slopes, np.sqrt(0.5)).any()
+        y = vertices[:, 1]
+        assert y.max() <= -4.0 - thickness.gap - WEB + 1e-9 or y.min() >= 3.0 + thickness.gap + WEB - 1e-9
+
+
+def test_a_late_hinge_keeps_the_end_that_stops_it(
+    assembled: Callable[..., Assembly], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assembly = assembled("shelter")
+    chain, thickness = assembly.solution.chain("wall"), assembly.solution.thickness
+    up = open_turn(assembly.solution.scaffold)[2]
+    described = dict(zip(chain.panels, panels(chain, thickness, up), strict=True))
+    draft = replace(assembly, shapes=assembly.shapes | described)
+    made = {b.name: solids.from_mesh(b.vertices, b.faces) for b in assembly.bodies}
+    made |= {name: solids.tidied(printed(shape)) for name, shape in described.items()}
+    bevel = [printed(hole) for _, hole in bevels(chain, thickness, 1, up, ())]
+    before = solids.overlap(made["wall/2"], bevel[0])
+    assert before > 10.0
+    # Beside the lap little is left of it; without a lap, all.
+    assert solids.overlap(stopped(draft, made, {}).made["wall/2"], bevel[0]) < 0.4 * before
+    monkeypatch.setattr(stopping, "stops", lambda *_, **__: iter(()))
+    assert solids.overlap(stopped(draft, made, {}).made["wall/2"], bevel[0]) == pytest.approx(before, abs=1e-3)
+
+
+def test_a_hole_without_room_is_not_taken(assembled: Callable[..., Assembly]) -> None:
+    assembly = assembled("shelter")
+    made = {b.name: solids.from_mesh(b.vertices, b.faces) for b in assembly.bodies}
+    trial = Trial(assembly, made)
+    low, high = solids.bounds(made["wall/1"])
+    middle = (low + high) / 2
+    across = [low - 1.0, high + 1.0]
+    through = box((across[0][0], across[0][1], middle[2]), (across[1][0], across[1][1], middle[2] + 2.0))
+    skin = box((low[0] - 1.0, middle[1], middle[2]), (1.7, middle[1] + 5.0, middle[2] + 5.0))
+    lap = next(joint for joint in assembly.joints if joint.stops == ("lap",))
+    end = box((low[0] - 1.0, low[1] - 1.0, high[2] - 9.0), (high[0] + 1.0, high[1] + 1.0, high[2] + 1.0))
+    assert "wall/1" in lap.parts
+    for hole in (through, skin, end):
+        assert not trial.trim("wall/1", [hole])
+    assert trial.made == made and trial.changes["wall/1"] == []
+    groove = box((low[0] - 1.0, middle[1], middle[2]), (low[0] + 0.5, middle[1] + 5.0, middle[2] + 5.0))
+    assert trial.trim("wall/1", [groove])
+    assert made["wall/1"].volume() - trial.made["wall/1"].volume() == pytest.approx(12.5, abs=0.01)
+    assert printed(trial.shapes["wall/1"]).volume() == pytest.approx(trial.made["wall/1"].volume(), rel=1e-4)
+    assert len(trial.changes["wall/1"]) == 1
 
 
 def test_a_leaning_panel_loses_little_of_its_own_root(make_chain: Callable[..., Chain]) -> None:

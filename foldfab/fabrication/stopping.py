@@ -9,6 +9,7 @@ from itertools import pairwise
 from foldfab.fabrication import solids
 from foldfab.fabrication.inspect import instants
 from foldfab.fabrication.latches import Lock
+from foldfab.fabrication.latching import fasten, latched
 from foldfab.fabrication.model import Assembly, Joint, Latch
 from foldfab.fabrication.mounts import Stop
 from foldfab.fabrication.posture import printed_turn
@@ -68,7 +69,7 @@ def stopped(assembly: Assembly, made: dict[str, Solid], ramps: Mapping[str, list
     latches = _latches(assembly, trial, made_stops)
     joints = tuple(
         replace(j, stops=taken[j.name], latch=latches.get(j.name))
-        for j in reached(assembly.joints, trial.turns, trial.made)
+        for j in reached(assembly.joints, trial.hinges.turns, trial.made)
     )
     return Stopped(trial.made, trial.shapes, joints, trial.locks, trial.changes)
 
@@ -106,17 +107,17 @@ def _latches(assembly: Assembly, trial: Trial, made: Mapping[str, Fitted]) -> di
         return found
     for chain, hinge, name in _hinges(assembly):
         if name in made:
-            held = trial.latched(replace(made[name], changed={}))
+            held = latched(trial, replace(made[name], changed={}))
             if held is not None:
-                trial.lock(made[name].stop, held)
+                fasten(trial, made[name].stop, held)
                 found[name] = held.latch
                 continue
         for stop in bolts(assembly.solution, chain, hinge):
             fitted = trial.fitted(stop)
-            held = trial.latched(fitted) if fitted is not None and trial.has_room(fitted) else None
+            held = latched(trial, fitted) if fitted is not None and trial.has_room(fitted) else None
             if fitted is not None and held is not None:
                 trial.take(fitted)
-                trial.lock(stop, held)
+                fasten(trial, stop, held)
                 found[name] = held.latch
                 break
     return found

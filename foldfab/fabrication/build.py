@@ -18,7 +18,7 @@ from foldfab.fabrication.model import AS_READ, LEVEL, Assembly, Finding, Joint
 from foldfab.fabrication.own import own_shapes
 from foldfab.fabrication.panels import panels
 from foldfab.fabrication.plates import axis_of, plate
-from foldfab.fabrication.posture import cuts_parts, edge_up, needs_pins
+from foldfab.fabrication.posture import cuts_parts, edge_up, needs_pins, open_turn
 from foldfab.fabrication.printed import printed
 from foldfab.fabrication.props import planed, propped
 from foldfab.fabrication.relief import relief
@@ -52,7 +52,7 @@ def build(solution: FoldSolution, posture: Posture, progress: Progress | None = 
     _require_hinges(solution, posture)
     solution = with_breaks(solution, posture)
     tell("solids", 0.0)
-    described, findings = _shapes(solution)
+    described, findings = _shapes(solution, posture)
     made = _solids(described)
     times = key_times(solution)
     poses = configuration(solution, times)
@@ -147,10 +147,11 @@ def _notes(solution: FoldSolution) -> list[Finding]:
     return [*posture, *read, *(Finding("note", note) for note in solution.notes)]
 
 
-def _shapes(solution: FoldSolution) -> tuple[dict[str, Shape], list[Finding]]:
+def _shapes(solution: FoldSolution, posture: Posture) -> tuple[dict[str, Shape], list[Finding]]:
     """By body, what it is made of in the open posture, canonical frame, mm; and the findings on the way."""
     made: dict[str, Shape] = {}
     findings = []
+    up = open_turn(solution.scaffold)[2] if posture == "open" else None
     for base in solution.scaffold.bases:
         carried = tuple(c for c in solution.chains if base.name in (c.anchor, c.far))
         made[base.name], is_filled = plate(base, carried, solution.thickness)
@@ -159,7 +160,7 @@ def _shapes(solution: FoldSolution) -> tuple[dict[str, Shape], list[Finding]]:
                 Finding("filled", f"{base.name} is printed as one full plate, because its parts are too far apart")
             )
     for chain in solution.chains:
-        made.update(zip(chain.panels, panels(chain, solution.thickness), strict=True))
+        made.update(zip(chain.panels, panels(chain, solution.thickness, up), strict=True))
     return made, findings
 
 

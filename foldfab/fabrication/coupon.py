@@ -100,7 +100,7 @@ def _half(thickness: Thickness, y: float, width: float, posture: Posture) -> tup
     corner = np.array([-TAIL + 1.0, y + text_width(number) / 2, 0.0])
     assert TAIL - half > HEIGHT + 2.0
     axes = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-    (flap,) = panels(chain, thickness)
+    (flap,) = panels(chain, thickness, np.array([0.0, 0.0, 1.0]) if posture == "open" else None)
     whole = union([base, *strokes(number, half - SUNK, half + RAISED, corner, axes)])
     return printed(whole), _posed(printed(flap), chain, posture)
 

@@ -104,14 +104,15 @@ def _group(low: float, high: float, thickness: Thickness) -> Knuckles:
 
 
 def room(marks: tuple[Mark, ...], radius: float, thickness: Thickness, x: float, z: float, span: Mark) -> list[Shape]:
-    """What the other part, which reaches over a span, must leave free around knuckles at `marks`.
+    """What the other part, which reaches over a span, must leave free around knuckles at `marks`."""
+    return [rod(radius, a, b, x, z, is_hole=True) for a, b in stretches(marks, thickness.gap, span)]
 
-    What would be left beyond them thinner than a line goes too.
-    """
-    gap, (low, high) = thickness.gap, span
+
+def stretches(marks: tuple[Mark, ...], gap: float, span: Mark) -> list[Mark]:
+    """Knuckles with the gaps beside them, and with what would be left of a span beyond them thinner than a line."""
+    low, high = span
     ends = [(a - gap, b + gap) for a, b in marks]
-    ends = [(a - LINE if low < a < low + LINE else a, b + LINE if high - LINE < b < high else b) for a, b in ends]
-    return [rod(radius, a, b, x, z, is_hole=True) for a, b in ends]
+    return [(a - LINE if low < a < low + LINE else a, b + LINE if high - LINE < b < high else b) for a, b in ends]
 
 
 def webs(marks: tuple[Mark, ...], thickness: Thickness, x: float, z: float, toward: float) -> list[Shape]:

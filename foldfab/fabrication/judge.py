@@ -6,7 +6,7 @@ shown to it with each question; a piece is asked for as one of a body, with whic
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -90,6 +90,11 @@ class Judge:
     def has_room(self, body: str, piece: Solid, others: Mapping[str, Solid]) -> bool:
         """Whether a body may have one piece more: it fits the bed, and stays apart from all other bodies."""
         return self.fits(body, piece) and self.is_apart(body, piece, others)
+
+    def may_have(self, name: str, piece: Solid, made: Mapping[str, Solid], holes: Sequence[Solid] = ()) -> bool:
+        """Whether a piece adds to a body, and there is room for what of it is not cut away again."""
+        added = solids.cut(piece, [made[name], *holes])
+        return not added.is_empty() and self.has_room(name, added, made)
 
     def is_spare(self, hole: Solid, name: str, panel: str, made: Mapping[str, Solid]) -> bool:
         """Whether a body may lose a hole to its hinge with a panel: no foot of another hinge, nor a third body."""

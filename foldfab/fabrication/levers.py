@@ -47,6 +47,8 @@ EDGE = 2 * LINE
 """A wall thinner than this between a slot and an edge of its base may be cut away, mm."""
 POST = 2.0
 """Thickness of a post, mm: what turns the panel on bends it across its layers."""
+PAST_AXIS = 0.1
+"""How far an arm reaches past the axis, where pointed knuckles have their edge, mm: edges that only touch are no body."""
 ROOTED = 0.2
 """How far a post reaches into a foot, mm: less than there is beside a socket."""
 
@@ -171,7 +173,7 @@ def _lip(mount: Mount, reach: float, span: Mark) -> Shape:
 def _arms(mount: Mount) -> Iterator[Stop]:
     under = CLOSE * mount.thickness.gap - mount.thickness.axis_height
     for low, high in within(mount.marks.follower, mount.thickness.gap):
-        arm = box((-_lever(mount), low, under), (0.0, high, under + NARROWEST))
+        arm = box((-_lever(mount), low, under), (PAST_AXIS, high, under + NARROWEST))
         yield Stop(mount.joint, "arm", False, mount.panel, arm, mount.base)
 
 

@@ -56,7 +56,7 @@ def own_shapes(draft: Assembly, held: Stopped, ramps: Mapping[str, list[Shape]])
             Finding("own", f"folded it is {higher:.1f} mm higher than with plain plates, by its own shapes")
         )
     return replace(
-        held, made=trial.made, shapes=trial.shapes, joints=reached(held.joints, trial.turns, trial.made)
+        held, made=trial.made, shapes=trial.shapes, joints=reached(held.joints, trial.hinges.turns, trial.made)
     ), findings
 
 

@@ -7,19 +7,24 @@ import numpy as np
 from foldfab.fabrication.hinges import knuckles, room, webs
 from foldfab.fabrication.shapes import Shape, box, cut, placed, rod, union
 from foldfab.fabrication.styles import style
+from foldfab.fabrication.undercuts import undercuts
 from foldfab.folding.mechanism import frames
 from foldfab.folding.model import Chain, Thickness
+from foldfab.geometry.arrays import Array
 
 
-def panels(chain: Chain, thickness: Thickness) -> list[Shape]:
-    """The panels of a chain in the open posture, from the anchor on."""
+def panels(chain: Chain, thickness: Thickness, up: Array | None = None) -> list[Shape]:
+    """The panels of a chain in the open posture, from the anchor on.
+
+    `up` (3,) is the way that points up where it is printed like that, canonical frame; else None.
+    """
     thickness = thickness.of(chain.panel)
     origins, axes = frames(chain, np.zeros(1))
-    made = [_panel(chain, thickness, i) for i in range(len(chain.lengths))]
+    made = [_panel(chain, thickness, i, None if up is None else axes[0, i] @ up) for i in range(len(chain.lengths))]
     return [placed(body, origins[0, i], axes[0, i]) for i, body in enumerate(made)]
 
 
-def _panel(chain: Chain, thickness: Thickness, i: int) -> Shape:
+def _panel(chain: Chain, thickness: Thickness, i: int, up: Array | None) -> Shape:
     """One panel in its own frame: x along its normal, y along the hinges, z along its length from its first axis."""
     half, gap, last = thickness.panel / 2, thickness.gap, len(chain.lengths) - 1
     low, high = float(chain.span[0]), float(chain.span[1])
@@ -48,4 +53,5 @@ def _panel(chain: Chain, thickness: Thickness, i: int) -> Shape:
         holes += room(marks.follower, thickness.knuckle_room, thickness, x, length, (low, high))
         more, bores = pinned.carrier(marks, thickness, x, length)
         extra, sockets = extra + more + webs(marks.carrier, thickness, x, length, -1.0), sockets + bores
+    sockets += undercuts(chain, thickness, i, up) if up is not None else []
     return cut(union([cut(union(solid), holes), *extra]), sockets)

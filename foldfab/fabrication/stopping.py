@@ -6,17 +6,25 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
+from foldfab.fabrication import solids
 from foldfab.fabrication.inspect import instants
 from foldfab.fabrication.latches import Lock
+from foldfab.fabrication.latching import fasten, latched
 from foldfab.fabrication.model import Assembly, Joint, Latch
 from foldfab.fabrication.mounts import Stop
+from foldfab.fabrication.posture import printed_turn
+from foldfab.fabrication.printed import printed
 from foldfab.fabrication.shapes import Shape
 from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.stops import bolts, rests, stops
 from foldfab.fabrication.trial import Change, Fitted, Trial
 from foldfab.fabrication.turning import Turn, stops_at, turns
+from foldfab.fabrication.undercuts import bevels, roofs
 from foldfab.folding.kinematics import configuration
 from foldfab.folding.model import Chain
+
+ROOFS = (1.0, 0.5)
+"""How high roofs are tried, in shares of what makes them pointed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,12 +63,37 @@ def stopped(assembly: Assembly, made: dict[str, Solid], ramps: Mapping[str, list
                 trial.take(best)
                 taken[name] = (*taken[name], best.stop.kind)
                 made_stops |= {} if is_folded else {name: best}
+    if assembly.posture == "open":
+        _undercut(assembly, trial, made_stops)
     latches = _latches(assembly, trial, made_stops)
     joints = tuple(
         replace(j, stops=taken[j.name], latch=latches.get(j.name))
-        for j in reached(assembly.joints, trial.turns, trial.made)
+        for j in reached(assembly.joints, trial.hinges.turns, trial.made)
     )
     return Stopped(trial.made, trial.shapes, joints, trial.locks, trial.changes)
+
+
+def _undercut(assembly: Assembly, trial: Trial, made: Mapping[str, Fitted]) -> None:
+    """Takes roofs and bevels from panels at their inserted hinges, where what is left is sound and stops as before."""
+    thickness, up = assembly.solution.thickness, printed_turn(assembly)[2]
+    for chain, hinge, name in _hinges(assembly):
+        if not 0 < hinge < len(chain.lengths):
+            continue
+        _trim(trial, [list(roofs(chain, thickness, hinge, up, share)) for share in ROOFS])
+        # The end of a panel is all that stops a hinge without a lap, if late.
+        if trial.is_prompt(name, is_folded=False):
+            own = [printed(made[name].stop.added)] if name in made else []
+            reach = [(solids.mesh(solid)[0] - chain.root) @ chain.along for solid in own]
+            taken = tuple((float(r.min()), float(r.max())) for r in reach)
+            _trim(trial, [list(bevels(chain, thickness, hinge, up, taken))])
+
+
+def _trim(trial: Trial, ways: list[list[tuple[str, Shape]]]) -> None:
+    """Takes holes from bodies, by their names: all in the first way, or each in the first way that has room."""
+    first = ways[0]
+    if first and not trial.trim(first[0][0], [hole for _, hole in first]):
+        for choices in zip(*ways, strict=True):
+            next((name for name, hole in choices if trial.trim(name, [hole])), "")
 
 
 def _latches(assembly: Assembly, trial: Trial, made: Mapping[str, Fitted]) -> dict[str, Latch]:
@@ -73,17 +106,17 @@ def _latches(assembly: Assembly, trial: Trial, made: Mapping[str, Fitted]) -> di
         return found
     for chain, hinge, name in _hinges(assembly):
         if name in made:
-            held = trial.latched(replace(made[name], changed={}))
+            held = latched(trial, replace(made[name], changed={}))
             if held is not None:
-                trial.lock(made[name].stop, held)
+                fasten(trial, made[name].stop, held)
                 found[name] = held.latch
                 continue
         for stop in bolts(assembly.solution, chain, hinge):
             fitted = trial.fitted(stop)
-            held = trial.latched(fitted) if fitted is not None and trial.has_room(fitted) else None
+            held = latched(trial, fitted) if fitted is not None and trial.has_room(fitted) else None
             if fitted is not None and held is not None:
                 trial.take(fitted)
-                trial.lock(stop, held)
+                fasten(trial, stop, held)
                 found[name] = held.latch
                 break
     return found

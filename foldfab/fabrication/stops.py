@@ -25,7 +25,8 @@ from foldfab.fabrication import levers
 from foldfab.fabrication.hinges import Mark
 from foldfab.fabrication.levers import AIM, CLOSE, LEAST, NEAR
 from foldfab.fabrication.mounts import WIDEST, Stop, mount, names, spots
-from foldfab.fabrication.shapes import Shape, box, placed
+from foldfab.fabrication.shapes import Shape, box, placed, wrap
+from foldfab.fabrication.walls import LINE
 from foldfab.folding.mechanism import frames, joints, tilts
 from foldfab.folding.model import Chain, FoldSolution, Thickness
 from foldfab.geometry.arrays import Array
@@ -82,10 +83,10 @@ def _laps(chain: Chain, hinge: int, thickness: Thickness, name: str) -> Iterator
         body, other = (over, below) if above else (below, over)
         z = -1.0 if above else 1.0
         for reach, end in _reaches(chain, hinge, above, thickness):
-            tongue = _spread(back * close / 2, back * half, -z * WEB, z * reach)
+            tongue = (back * close / 2, back * half), (-z * WEB, z * reach)
             recess = _spread(-back * close / 2, back * (half + 1.0), 0.0, z * end)
             for low, high in spots((float(chain.span[0]), float(chain.span[1])), WIDEST, chain.breaks):
-                added, hole = _slab(tongue, low, high), _slab(recess, low - gap, high + gap)
+                added, hole = _tapered(tongue, low, high), _slab(recess, low - gap, high + gap)
                 yield Stop(name, "lap", False, body, placed(added, origin, axes), other, cut=placed(hole, origin, axes))
 
 
@@ -132,6 +133,18 @@ def _straight(chain: Chain, hinge: int) -> tuple[Array, Array]:
 
 def _spread(x0: float, x1: float, z0: float, z1: float) -> tuple[Mark, Mark]:
     return (min(x0, x1), max(x0, x1)), (min(z0, z1), max(z0, z1))
+
+
+def _tapered(plane: tuple[Mark, Mark], low: float, high: float) -> Shape:
+    """A slab that is whole where x begins and z begins; its other edges are bevelled, so that each lays little first.
+
+    A line is left of its faces.
+    """
+    (x0, x1), (z0, z1) = plane
+    taper = max(0.0, min(abs(x1 - x0), (high - low) / 2, abs(z1)) - LINE)
+    way, up = np.sign(x1 - x0), np.sign(z1 - z0)
+    rings = ((x0, 0.0), (x1 - way * taper, 0.0), (x1, taper))
+    return wrap(np.array([(x, y, z) for x, t in rings for y in (low + t, high - t) for z in (z0, z1 - up * t)]))
 
 
 def _slab(plane: tuple[Mark, Mark], low: float, high: float) -> Shape:

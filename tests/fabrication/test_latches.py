@@ -13,7 +13,7 @@ import pytest
 
 from foldfab.export.check import inspect_folder
 from foldfab.export.write import write
-from foldfab.fabrication import solids
+from foldfab.fabrication import latching, solids
 from foldfab.fabrication.build import build
 from foldfab.fabrication.latches import (
     ACROSS,
@@ -162,7 +162,7 @@ def trial(assembled: Callable[..., Assembly]) -> Trial:
 
 def test_a_lock_holds_only_where_its_tongue_passes(trial: Trial) -> None:
     stop, held = a_bolt(trial)
-    range_, panel = trial.turns[stop.joint], solids.union([trial.made[stop.body], printed(stop.added)])
+    range_, panel = trial.hinges.turns[stop.joint], solids.union([trial.made[stop.body], printed(stop.added)])
     is_first = next(j for j in trial.assembly.joints if j.name == stop.joint).parts[0] == stop.other
     assert held_at(range_, panel, held, is_base_first=is_first) is not None
     bare = solids.cut(panel, [solids.box(*grown(printed(held.pushed), 4.0))])
@@ -183,11 +183,13 @@ def test_nothing_that_is_made_later_takes_a_latch_away(assembled: Callable[..., 
     trial = Trial(assembly, as_solids(assembly))
     solution = assembly.solution
     tried = ((stop, trial.fitted(stop)) for stop in bolts(solution, solution.chains[0], 0))
-    stop, fitted, made = next((s, f, m) for s, f in tried if f is not None and (m := trial.latched(f)) is not None)
+    stop, fitted, made = next(
+        (s, f, m) for s, f in tried if f is not None and (m := latching.latched(trial, f)) is not None
+    )
     held = stop.lock
     assert held is not None and made.latch.base == "top"
     trial.take(fitted)
-    trial.lock(stop, made)
+    latching.fasten(trial, stop, made)
     filled = union([trial.shapes["top"], common(held.groove, held.seats)])
     assert trial.reshape("top", filled) == f"leaves {stop.joint} without a latch"
     (low, high), through = solids.bounds(printed(held.seats)), np.array([0.0, 0.0, 1.0])

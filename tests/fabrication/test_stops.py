@@ -18,7 +18,7 @@ from foldfab.fabrication.solids import Solid
 from foldfab.fabrication.stops import Stop, rests, stops
 from foldfab.fabrication.trial import Trial
 from foldfab.fabrication.turning import PAST, meets, turn
-from foldfab.fabrication.walls import thin_sides
+from foldfab.fabrication.walls import LINE, thin_sides
 from foldfab.folding.model import FoldSolution
 from foldfab.recipe.model import Part
 
@@ -107,6 +107,24 @@ def test_a_rest_on_edge_has_a_ramp_below_it(assembled: Callable[..., Assembly]) 
     root = chain.root[0] + chain.panel / 2 * np.array([-1.0, 1.0])
     flat = corners[down > np.sqrt(0.5)][..., 0]
     assert len(flat) and ((flat >= root[0] - 1e-6) & (flat <= root[1] + 1e-6)).all()
+
+
+def test_a_lap_is_whole_where_it_meets_and_lays_little_over_its_recess(assembled: Callable[..., Assembly]) -> None:
+    assembly = assembled("shelter")
+    (first, *_) = stops(assembly.solution, assembly.solution.chain("wall"), 1, in_open=True)
+    made = printed(first.added)
+    low, high = solids.bounds(made)
+    # The face that meets is the one towards the axis; its edges are where the lap ends.
+    axis = next(joint.axis for joint in assembly.joints if joint.name == first.joint)
+    sides = [(low[0], high[0]), (high[0], low[0])]
+    near, far = min(sides, key=lambda side: abs(side[0] - axis[0][0]))
+    vertices = solids.mesh(made)[0]
+    meeting, outer = (vertices[np.abs(vertices[:, 0] - x) < 1e-6] for x in (near, far))
+    assert np.allclose(np.ptp(meeting, axis=0)[1:], (high - low)[1:])
+    taper = abs(far - near) - LINE
+    assert np.ptp(outer, axis=0)[1:] == pytest.approx((high - low)[1:] - [2 * taper, taper])
+    tip, root = sorted(solids.section(made, z).area() for z in (low[2] + 0.01, high[2] - 0.01))
+    assert tip < 0.35 * root
 
 
 def test_a_stop_without_room_is_not_made(assembled: Callable[..., Assembly]) -> None:

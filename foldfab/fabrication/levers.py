@@ -48,7 +48,7 @@ EDGE = 2 * LINE
 POST = 2.0
 """Thickness of a post, mm: what turns the panel on bends it across its layers."""
 PAST_AXIS = 0.1
-"""How far an arm reaches past the axis, where pointed knuckles have their edge, mm: edges that only touch are no body."""
+"""How far an arm reaches past the axis, where pointed knuckles have their edge, mm: what only touches is no body."""
 ROOTED = 0.2
 """How far a post reaches into a foot, mm: less than there is beside a socket."""
 

@@ -1,11 +1,11 @@
 """What is taken from panels around their hinges, so that what hangs in the air as it is printed comes free.
 
 The first layers of a knuckle that stands in the air are laid over a gap that is one or two layers high, and grow
-together with what lies below. A round one, of 4 mm, lays a stripe of 1.7 mm there. So, where axes lie level, a panel's
-knuckle is *pointed* where another body lies below or above it: by two planes of 45° that just leave its cones whole.
-Where axes stand upright, knuckles *taper* to their cones at both ends. The *roof* of the room that a panel leaves
-around the knuckles of another one, and the end of a panel that stands over another one, are planes of 45° too, where there is
-room. Material is only taken away, so that every gap and every clearance of the fold stays.
+together with what lies below. A round one, of 4 mm, lays a stripe of 1.7 mm there. So, where axes lie level, a
+panel's knuckle is *pointed* where another body lies below or above it: by two planes of 45° that just leave its cones
+whole. Where axes stand upright, knuckles *taper* to their cones at both ends. The *roof* of the room that a panel
+leaves around the knuckles of another one, and the end of a panel that stands over another one, are planes of 45° too,
+where there is room. Material is only taken away, so that every gap and every clearance of the fold stays.
 """
 
 from __future__ import annotations

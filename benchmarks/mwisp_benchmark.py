@@ -215,14 +215,14 @@ def kept() -> Iterator[dict[object, ConflictGraph]]:
 
     def keeping(
         costs: list[Array], conflicts: Mapping[tuple[int, int], Bools],
-        forbidden: frozenset[Combination] = frozenset(), *rest: Any,
+        forbidden: frozenset[Combination] = frozenset(), *rest: Any, **more: Any,
     ) -> Picked:  # fmt: skip
         tables = tuple((pair, conflicts[pair].tobytes()) for pair in sorted(conflicts))
         key = (tuple(price.tobytes() for price in costs), tables, forbidden)
         if key not in graphs:
             copied = {pair: excluded.copy() for pair, excluded in conflicts.items()}
             graphs[key] = ConflictGraph([price.copy() for price in costs], copied, forbidden)
-        return own(costs, conflicts, forbidden, *rest)
+        return own(costs, conflicts, forbidden, *rest, **more)
 
     # Wherever it was imported to.
     users = [module for name, module in sys.modules.items() if name.startswith("foldfab.")]

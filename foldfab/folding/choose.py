@@ -45,15 +45,10 @@ Combination = tuple[tuple[int, tuple[int, ...]], ...]
 
 
 def cheapest(
-    costs: list[Array],
-    conflicts: Mapping[tuple[int, int], Bools],
-    forbidden: frozenset[Combination] = frozenset(),
-    gaps: list[float] | None = None,
-    tangled: set[tuple[int, ...]] | None = None,
-    work: Work | None = None,
-    *,
+    costs: list[Array], conflicts: Mapping[tuple[int, int], Bools], forbidden: frozenset[Combination] = frozenset(),
+    gaps: list[float] | None = None, tangled: set[tuple[int, ...]] | None = None, work: Work | None = None, *,
     is_brief: bool = False,
-) -> tuple[int, ...] | None:
+) -> tuple[int, ...] | None:  # fmt: skip
     """The option of each group in the cheapest conflict-free choice, or None where there is none.
 
     Args:

@@ -53,9 +53,9 @@ class _Step:
 
 def trespasses(problem: Problem, folds: tuple[UnitFold, ...]) -> Found:
     """What the sheets of the first unit in which any do cross of others; nothing if none do."""
-    if len(folds) == 1 and len(folds[0].unit.bases) < 3:
-        return {}
     chains = [c for fold in folds for c in fold.chains]
+    if not chains or (len(folds) == 1 and len(folds[0].unit.bases) < 3):
+        return {}
     table, start = spread(problem.scaffold, chains), 0
     for fold in folds:
         end = start + len(fold.chains)

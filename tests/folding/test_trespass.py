@@ -104,6 +104,13 @@ def test_what_lies_flat_already_is_in_no_ones_way(
     assert [fold.unit.name for fold in folds] == ["leg-left", "left"] and trespasses(made, folds) == {}
 
 
+def test_what_is_deleted_is_in_no_ones_way(room: Callable[[float], Parts], problem: Make, folded: Folded) -> None:
+    made = problem(room(40.0))
+    table, walls = (fold for _, fold in folded(made)[1])
+    assert trespasses(made, (table, walls)) and trespasses(made, (table, replace(walls, chains=()))) == {}
+    assert trespasses(made, tuple(replace(fold, chains=()) for fold in (table, walls))) == {}
+
+
 @pytest.mark.parametrize("edge", [24.0, 26.0])
 def test_an_elbow_that_goes_through_a_base_of_its_own_unit(
     edge: float, landing: Callable[..., Parts], solution: Solutions, monkeypatch: pytest.MonkeyPatch

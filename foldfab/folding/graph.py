@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
 from foldfab.folding.basic import Option
-from foldfab.folding.choose import EPSILON, Combination, cheaper, cheapest
+from foldfab.folding.choose import Combination, cheaper, cheapest
 from foldfab.folding.conflict import compare, modes, neighbours, table, windows_table
 from foldfab.folding.options import Options, options_of
 from foldfab.folding.problem import Problem
@@ -25,18 +24,6 @@ MANY = 16
 
 Lesson = tuple[Clash, tuple[Place | None, ...]]
 """A clash and what was chosen for each patch of the unit."""
-
-
-@dataclass(frozen=True, slots=True)
-class Outlook:
-    """What lanes that are not made yet could better."""
-
-    wanted: tuple[str, ...] = ()
-    """The patches whose lanes could."""
-    floor: float = -np.inf
-    """What any choice counts at least that drags no bases along, be its lanes made or not."""
-    least: tuple[int, ...] | None = None
-    """The choice that counts no more than that, where there is one of lanes that are made."""
 
 
 class Graph:
@@ -60,8 +47,9 @@ class Graph:
         self.costs: list[Array] = [o.weight.copy() for o in self.options]
         self.tables: dict[tuple[int, int], Bools] = {}
         in_modes = len(self.patches) > MANY and any(x.drag is not None for x in own.lanes)
-        self.modes: list[list[Bools]] = _masks(self.options, modes(own, found.lanes)) if in_modes else []
-        self._ways = partial(modes, own, found.lanes)
+        self.modes: list[list[Bools]] = going_along(self.options, modes(own, found.lanes)) if in_modes else []
+        self.ways = partial(modes, own, found.lanes)
+        """The lanes, by number, of each way to drag the bases."""
         if len(self.patches) > 1:
             self._compare(problem, own, found, in_modes=in_modes, is_bare=is_bare)
         self._treat_alike(problem, chosen or {})
@@ -143,56 +131,13 @@ class Graph:
         if any(places.get(o.patch, (None,))[0] not in o.lanes for o in self.options):
             return None
         picked = tuple(o.index(places[o.patch]) for o in self.options)
-        return picked if self._is_free(picked) else None
+        return picked if self.is_free(picked) else None
 
-    def _is_free(self, picked: tuple[int, ...]) -> bool:
+    def is_free(self, picked: tuple[int, ...]) -> bool:
         """Whether nothing is known against a choice."""
         is_free = all(np.isfinite(cost[i]) for cost, i in zip(self.costs, picked, strict=True))
         is_free &= not any(table[picked[g], picked[h]] for (g, h), table in self.tables.items())
         return is_free and not any(all(picked[g] in many for g, many in combination) for combination in self.forbidden)
-
-    def promising(self, prices: Mapping[str, float], known: float) -> Outlook:
-        """What lanes that are not made yet could be part of a choice cheaper than the one known.
-
-        A promise, a lane at its patch's price of `prices` that conflicts with nothing, takes the place of the patch's
-        deletion: where the cheapest choice takes no promise, no lane that is not made yet can better it, and none that
-        is made, but for those that drag bases along.
-        """
-        last = {g: len(self.costs[g]) - 1 for g, p in enumerate(self.patches) if p in prices}
-        costs = [self._undragged(g) for g in range(len(self.patches))]
-        for g, end in last.items():
-            costs[g][end] = prices[self.patches[g]]
-        tables = {pair: _without_last(table, pair, last) for pair, table in self.tables.items()}
-        forbidden = frozenset(c for c in self.forbidden if not any(last.get(g) in many for g, many in c))
-        gaps: list[float] = []
-        picked = cheapest(costs, tables, forbidden, gaps, work=self.work)
-        if picked is None:
-            return Outlook()
-        if gaps:
-            return Outlook(tuple(self.patches[g] for g in last))
-        floor = sum(float(cost[i]) for cost, i in zip(costs, picked, strict=True))
-        wanted = tuple(self.patches[g] for g, end in last.items() if picked[g] == end)
-        # What was left out beside promises may still hold for other options.
-        return Outlook(wanted if floor < known else (), floor, picked if not wanted and self._is_free(picked) else None)
-
-    def _undragged(self, group: int) -> Array:
-        """What the options of a patch cost beside lanes not made yet: those come straight down, none drags along."""
-        options = self.options[group]
-        drags = np.repeat([x.drag is not None for x in options.lanes], len(options.windows))
-        return np.where(np.append(drags, False), np.inf, self.costs[group])
-
-    def is_cheapest(self, picked: tuple[int, ...], floor: float) -> bool:
-        """Whether nothing counts less than a choice, where what drags no bases along counts at least a `floor`.
-
-        Where some lane drags bases along, so do all that are not deleted, and in the same way.
-        """
-        weight = self.weight(picked) - EPSILON
-        numbers = {x.number for o in self.options for x in o.lanes if x.drag is not None}
-        ways = (
-            _masks(self.options, [way for way in self._ways() if way & numbers]) if numbers and floor >= weight else []
-        )
-        least = (sum(float(cost[mask].min()) for mask, cost in zip(way, self.costs, strict=True)) for way in ways)
-        return min(floor, *least, np.inf) >= weight
 
     def weight(self, picked: tuple[int, ...]) -> float:
         """What a choice counts in the search."""
@@ -221,7 +166,7 @@ class Graph:
                 self.forbidden.add(tuple((g, tuple(many)) for g, many in zip(groups, alike, strict=True)))
 
 
-def _masks(options: Sequence[Options], modes: list[set[int]]) -> list[list[Bools]]:
+def going_along(options: Sequence[Options], modes: list[set[int]]) -> list[list[Bools]]:
     """For each way to drag the bases, which options of each patch (n,) go along; deletion always does."""
     made = []
     for mode in modes:
@@ -229,13 +174,3 @@ def _masks(options: Sequence[Options], modes: list[set[int]]) -> list[list[Bools
         masks = [np.repeat(own, len(o.windows)) for own, o in zip(alike, options, strict=True)]
         made.append([np.append(mask, True).astype(bool) for mask in masks])
     return made
-
-
-def _without_last(table: Bools, pair: tuple[int, int], last: Mapping[int, int]) -> Bools:
-    """A table of two groups in which the last options of some groups conflict with nothing."""
-    found = table.copy()
-    if pair[0] in last:
-        found[-1] = False
-    if pair[1] in last:
-        found[:, -1] = False
-    return found

@@ -16,12 +16,13 @@ from foldfab.folding.aside import bring_back
 from foldfab.folding.basic import Option, Variant
 from foldfab.folding.conflict import compare_sheets
 from foldfab.folding.congruent import repertoire
-from foldfab.folding.graph import Graph, Lesson, Outlook
+from foldfab.folding.graph import Graph, Lesson
 from foldfab.folding.interruption import interrupted
 from foldfab.folding.model import Chain
 from foldfab.folding.options import DELETION
 from foldfab.folding.press import Motion
 from foldfab.folding.problem import Problem
+from foldfab.folding.promises import Outlook, is_cheapest, promising
 from foldfab.folding.prospects import Prospects, blocked_pieces, prospects, unhindered
 from foldfab.folding.realise import Clash, realised
 from foldfab.folding.reasons import reason_against, reasons_of
@@ -303,7 +304,7 @@ def _best_offered(
         if not np.isfinite(outlook.floor):
             outlook = _outlook(problem, own, graph, picked, is_least=is_least)
     best = picked if is_least else outlook.least or picked
-    if not is_least and (best is None or not graph.is_cheapest(best, outlook.floor)):
+    if not is_least and (best is None or not is_cheapest(graph, best, outlook.floor)):
         best = graph.cheapest()
     return found, graph, best
 
@@ -331,7 +332,7 @@ def _bettering(problem: Problem, own: Repertoire, graph: Graph, weight: float) -
     spare = weight - sum(price for price in first.values() if np.isfinite(price))
     prices = {p: _price(problem, p, later[0]) for p, later in own.later.items() if later}
     affordable = {p: price for p, price in prices.items() if price - first[p] < spare}
-    return graph.promising(affordable, weight) if affordable else Outlook()
+    return promising(graph, affordable, weight) if affordable else Outlook()
 
 
 def _price(problem: Problem, patch: str, variant: Variant) -> float:

@@ -14,6 +14,7 @@ from foldfab.folding.graph import Graph
 from foldfab.folding.options import Options
 from foldfab.folding.ordering import floors
 from foldfab.folding.problem import Problem
+from foldfab.folding.promises import is_cheapest, promising
 from foldfab.folding.prospects import unhindered
 from foldfab.folding.realise import Clash
 from foldfab.folding.repertoire import extend
@@ -71,10 +72,10 @@ def test_a_choice_is_proven_only_once_no_lane_promises_to_better_it(
 
 def test_a_promise_is_taken_where_it_is_cheaper_than_what_is_known(problem: Make) -> None:
     graph = graph_of(problem("corner", slanting=False))
-    assert graph.promising({"back": 10.0, "side": 10.0}, np.inf).wanted == ()
-    assert graph.promising({"back": 0.0, "side": 10.0}, np.inf).wanted == ("back",)
-    assert graph.promising({"back": 0.0, "side": 0.0}, np.inf).wanted == ("back", "side")
-    assert graph.promising({"back": 0.1, "side": 0.1}, 0.2).wanted == ()
+    assert promising(graph, {"back": 10.0, "side": 10.0}, np.inf).wanted == ()
+    assert promising(graph, {"back": 0.0, "side": 10.0}, np.inf).wanted == ("back",)
+    assert promising(graph, {"back": 0.0, "side": 0.0}, np.inf).wanted == ("back", "side")
+    assert promising(graph, {"back": 0.1, "side": 0.1}, 0.2).wanted == ()
 
 
 @pytest.mark.parametrize("name", ["three_walls", "chair", "corner", "two_ways", "deep_box", "table", "beside"])
@@ -113,18 +114,18 @@ def test_a_choice_is_the_cheapest_only_if_nothing_that_drags_counts_less(problem
         graph = Graph(made, own, unhindered(made, own), np.zeros(3))
         straight = tuple(int(np.where(_is_split(o), o.weight, np.inf).argmin()) for o in graph.options)
         weight = graph.weight(straight)
-        assert 0 < weight < 1 and graph.is_cheapest(straight, weight) is is_least
-        assert not graph.is_cheapest(straight, weight - 0.01)
+        assert 0 < weight < 1 and is_cheapest(graph, straight, weight) is is_least
+        assert not is_cheapest(graph, straight, weight - 0.01)
 
 
 def test_what_was_left_out_beside_promises_is_asked_of_the_choice_itself(problem: Make) -> None:
     graph = graph_of(problem("three_walls", slanting=False))
     dear = dict.fromkeys(graph.patches, 10.0)
-    found = graph.promising(dear, np.inf)
+    found = promising(graph, dear, np.inf)
     assert found.least is not None and not found.wanted and found.floor == pytest.approx(graph.weight(found.least))
     gone = tuple(len(o.price) - 1 for o in graph.options)
     graph.forbidden.add(tuple((g, (i, gone[g])) for g, i in enumerate(found.least)))
-    assert graph.promising(dear, np.inf).least is None
+    assert promising(graph, dear, np.inf).least is None
 
 
 @pytest.mark.parametrize("patches", [("back",), ("back", "side")])
@@ -134,7 +135,7 @@ def test_a_promise_takes_over_no_conflicts_of_the_deletion_whose_place_it_takes(
     graph = graph_of(problem("corner", slanting=False))
     gone = tuple(len(o.price) - 1 for o in graph.options)
     graph.learn(gone, Clash((patches,), "the furniture would fall apart", cuts=True))
-    assert graph.promising({"back": 0.0, "side": 0.0}, np.inf).wanted == ("back", "side")
+    assert promising(graph, {"back": 0.0, "side": 0.0}, np.inf).wanted == ("back", "side")
 
 
 def test_beside_a_promise_nothing_is_dragged_along(problem: Make) -> None:
@@ -143,8 +144,8 @@ def test_beside_a_promise_nothing_is_dragged_along(problem: Make) -> None:
     own = repertoire(made, made.unit_of["left"])
     graph = Graph(made, own, unhindered(made, own), np.zeros(3))
     assert {x.variant.mechanism for x in own.lanes} == {"slanted"}
-    assert graph.promising({"left": 0.0}, 10.0).wanted == ()
-    assert graph.promising({"left": 0.0, "right": 0.0}, 10.0).wanted == ("left", "right")
+    assert promising(graph, {"left": 0.0}, 10.0).wanted == ()
+    assert promising(graph, {"left": 0.0, "right": 0.0}, 10.0).wanted == ("left", "right")
 
 
 def test_what_was_learned_of_lanes_that_are_not_there_any_more_is_left_aside(problem: Make) -> None:

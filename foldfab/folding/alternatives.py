@@ -11,11 +11,12 @@ from foldfab.folding.model import FoldSolution, Thickness
 from foldfab.folding.optimum import other
 from foldfab.folding.options import DELETION
 from foldfab.folding.ordering import floors
-from foldfab.folding.problem import Problem
+from foldfab.folding.problem import Problem, kept_clear
 from foldfab.folding.rehearsal import first_clash
 from foldfab.folding.scene import open_scene
 from foldfab.folding.solve import posed, solution, solve
 from foldfab.folding.symmetry import Signature
+from foldfab.folding.trespass import trespasses
 from foldfab.scaffold.model import Scaffold
 
 FIRST_STEP = 0.05
@@ -45,12 +46,17 @@ def alternatives(scaffold: Scaffold, count: int) -> tuple[FoldSolution, ...]:
 def _following(problem: Problem, last: FoldSolution, excluded: list[dict[str, Signature]]) -> FoldSolution | None:
     """The best solution that is not excluded yet; it is excluded from then on."""
     scene, step, tries = open_scene(problem), FIRST_STEP, 0
-    floor = {name: choice.weight for name, choice in floors(problem).items()}
     while tries < STEPS:
+        floor = {name: choice.weight for name, choice in floors(problem).items()}
         most = _weight(last) + step
         ordered, bound = other(problem, scene, floor, tuple(excluded), most, problem.options.time_limit)
         if ordered is None:
             step, tries = 3 * step, tries + 1
+            continue
+        crossed = trespasses(problem, ordered.folds)
+        if crossed:
+            problem = kept_clear(problem, crossed)
+            scene = open_scene(problem)
             continue
         found = solution(problem, bound, ordered)
         excluded.append(_signatures(problem, found))

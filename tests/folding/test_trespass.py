@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from foldfab.errors import FoldingError
+from foldfab.folding import alternatives
 from foldfab.folding import solve as solving
 from foldfab.folding.basic import Variant
 from foldfab.folding.congruent import repertoire
@@ -78,6 +79,17 @@ def test_what_is_carried_aside_into_another_units_wall(
     unaware(monkeypatch)
     spoilt = solution(room(40.0))
     assert ways(spoilt)["leg-left"][0] == "slanted" and told(spoilt) == {("collision", "without thickness")}
+
+
+def test_nor_is_it_an_alternative(
+    room: Callable[[float], Parts], scaffold: Callable[..., Scaffold], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    posed = scaffold(room(40.0), shrink_steps=2, max_hinges=1, time_limit=0.5)
+    found = alternatives.alternatives(posed, 2)
+    assert len(found) == 2 and all(violations(one) == () for one in found)
+    assert all(one.cost > 0 for one in found)
+    monkeypatch.setattr(alternatives, "trespasses", lambda *_: {})
+    assert any(violations(one) for one in alternatives.alternatives(posed, 2))
 
 
 def test_a_room_that_is_wide_enough(room: Callable[[float], Parts], solution: Solutions) -> None:

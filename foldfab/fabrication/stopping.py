@@ -93,7 +93,7 @@ def _trim(trial: Trial, ways: list[list[tuple[str, Shape]]]) -> None:
     first = ways[0]
     if first and not trial.trim(first[0][0], [hole for _, hole in first]):
         for choices in zip(*ways, strict=True):
-            next((name for name, hole in choices if trial.trim(name, [hole])), "")
+            any(trial.trim(name, [hole]) for name, hole in choices)
 
 
 def _latches(assembly: Assembly, trial: Trial, made: Mapping[str, Fitted]) -> dict[str, Latch]:

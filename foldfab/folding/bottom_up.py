@@ -58,8 +58,7 @@ def _folded(problem: Problem, scene: Scene, own: Repertoire, around: Surrounding
     if round(estimated(problem, scene, own, around) - floor.counted, DIGITS) > 0:
         return None
     found = fold_seen(problem, scene, own, around, is_final=True)
-    is_least = isinstance(found, UnitFold) and round(found.weight - floor.counted, DIGITS) <= 0
-    return found if is_least and isinstance(found, UnitFold) else None
+    return found if isinstance(found, UnitFold) and round(found.weight - floor.counted, DIGITS) <= 0 else None
 
 
 def _with_room(problem: Problem, own: Repertoire, around: Surroundings, floor: Choice) -> Mapping[str, Place] | None:

@@ -213,7 +213,7 @@ def _balanced(
         if site.far is not None:
             slack = clear[site.anchor, site.far] - (way[site.far] - way[site.anchor]) - stacks[patch]
             variant = filled(variant, slack, site.panel, by_thickness=by_thickness)
-        chain = _chain(problem, unit, patch, variant, chosen[patch].window)
+        chain = chain_of(problem, unit, patch, variant, chosen[patch].window)
         if chain is None or sum(max(pad, 0.0) for pad in variant.pads) > PAD_SHARE * site.clear:
             highest = max((p for p in stacks if problem.sites[p].far == site.far), key=lambda p: (stacks[p], p))
             blamed = (patch,) if highest == patch else (patch, highest)
@@ -223,8 +223,8 @@ def _balanced(
     return tuple(chains), way
 
 
-def _chain(problem: Problem, unit: Unit, patch: str, variant: Variant, window: tuple[int, int]) -> Chain | None:
-    """The chain of a variant in a window, or None where panels would be too short."""
+def chain_of(problem: Problem, unit: Unit, patch: str, variant: Variant, window: tuple[int, int]) -> Chain | None:
+    """The chain of a variant in a window, balanced or not, or None where it or its panels would be too small."""
     site, steps = problem.sites[patch], problem.options.shrink_steps
     known = repertoire(problem, unit).by_variant.get((patch, variant)) if window == (0, steps) else None
     if known is not None:

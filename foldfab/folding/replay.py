@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from dataclasses import replace
 from math import fsum
 
-from foldfab.folding import basic
 from foldfab.folding.congruent import repertoire
 from foldfab.folding.group import NO_MORE, Group, learn
 from foldfab.folding.lessons import lessons_of, lessons_of_others, must_wait, out_of_the_box
@@ -16,7 +15,7 @@ from foldfab.folding.options import Options
 from foldfab.folding.ordering import after
 from foldfab.folding.problem import Problem
 from foldfab.folding.prospects import prospects
-from foldfab.folding.realise import Clash, realised
+from foldfab.folding.realise import Clash, chain_of, realised
 from foldfab.folding.reasons import reasons_of
 from foldfab.folding.scene import Scene, shown
 from foldfab.folding.surroundings import look
@@ -74,14 +73,9 @@ def _learn_from_repair(
 
 def _plain_chains(problem: Problem, unit: Unit, options: Mapping[str, Options], proposal: Proposal) -> list[Chain]:
     """The chains of a proposal before anything is balanced."""
-    made = []
-    for patch in unit.patches:
-        option = options[patch][proposal.chosen[patch]]
-        span = basic.window_span(problem.sites[patch], option.window, problem.options.shrink_steps, problem.thickness)
-        if option.variant is not None and span is not None:
-            chain = basic.chain(problem.sites[patch], option.variant, span, problem.thickness)
-            made += [chain] if chain is not None else []
-    return made
+    chosen = ((patch, options[patch][proposal.chosen[patch]]) for patch in unit.patches)
+    made = [chain_of(problem, unit, p, o.variant, o.window) for p, o in chosen if o.variant is not None]
+    return [chain for chain in made if chain is not None]
 
 
 def _unit_played(

@@ -7,7 +7,7 @@ lack, and the fold is simulated. What then meets is added to the conflicts and t
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from foldfab.folding.press import Motion
 from foldfab.folding.problem import Problem
 from foldfab.folding.promises import Outlook, is_cheapest, promising
 from foldfab.folding.prospects import Prospects, blocked_pieces, prospects, unhindered
-from foldfab.folding.realise import Clash, realised
+from foldfab.folding.realise import Clash, chain_of, realised
 from foldfab.folding.reasons import reason_against, reasons_of
 from foldfab.folding.repertoire import Place, Repertoire, extend
 from foldfab.folding.scene import Scene, alone
@@ -169,7 +169,7 @@ def _least_choice(problem: Problem, own: Repertoire) -> Choice:
     found_any, floor = interrupted(problem, own, graph, picked)
     if found_any:
         graph, picked = settled()
-    if picked is not None and not own.sheets and crossings(problem.scaffold, _chains(problem, graph, picked)):
+    if picked is not None and not own.sheets and crossings(problem.scaffold, _chains(problem, own.unit, graph, picked)):
         compare_sheets(problem, own)
         graph, picked = settled()
     if picked is None:
@@ -184,19 +184,12 @@ def _least_choice(problem: Problem, own: Repertoire) -> Choice:
     return Choice(min(weight, floor), places, max(weight - floor, 0.0), gap)
 
 
-def _chains(problem: Problem, graph: Graph, picked: tuple[int, ...]) -> list[Chain]:
+def _chains(problem: Problem, unit: Unit, graph: Graph, picked: tuple[int, ...]) -> list[Chain]:
     """The chains of a choice as they are before anything is balanced."""
-    made = []
-    for options, i in zip(graph.options, picked, strict=True):
-        place = options.place(i)
-        if place is not None:
-            lane, window = place
-            if window == (0, problem.options.shrink_steps):
-                made.append(lane.chain)
-                continue
-            span = basic.window_span(problem.sites[lane.patch], window, problem.options.shrink_steps, problem.thickness)
-            made += [replace(lane.chain, span=span)] if span is not None else []
-    return made
+    places = (options.place(i) for options, i in zip(graph.options, picked, strict=True))
+    kept = [place for place in places if place is not None]
+    made = (chain_of(problem, unit, x.patch, x.variant, window) for x, window in kept)
+    return [chain for chain in made if chain is not None]
 
 
 def is_solved(problem: Problem, around: Surroundings) -> bool:
